@@ -11,7 +11,7 @@ import pytest
 
 from robolink import Context, Node
 from robolink.cli.main import main
-from robolink.cli.service import echo
+from robolink.cli.service import verbs
 from robolink.client import Client
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
@@ -230,7 +230,7 @@ def test_events_as_json(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> No
         if len(lines) == 2:
             press_ctrl_c(text)
 
-    when_said(monkeypatch, echo, "say", second)
+    when_said(monkeypatch, verbs, "say", second)
     assert main(["service", "echo", "/lab/arm", "--json"]) == 130
     assert [json.loads(each)["info"]["event_type"] for each in lines] == ["REQUEST_RECEIVED", "RESPONSE_SENT"]
     assert json.loads(lines[1])["response"] == [{"success": True, "message": "was True"}]
@@ -240,7 +240,7 @@ def test_who_tells_nothing_is_asked_whether_introspection_is_on(
     talk: Talk, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     talk.introspect(OFF)
-    when_said(monkeypatch, echo, "tell", press_ctrl_c)
+    when_said(monkeypatch, verbs, "tell", press_ctrl_c)
     assert main(["service", "echo", "/lab/arm"]) == 130
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)

@@ -29,12 +29,12 @@ PATIENT = """
 import sys
 from robolink import type_lookup
 from robolink.cli.main import main
-from robolink.cli.action import goal
-from robolink.cli.service import call
+from robolink.cli.action import verbs as action
+from robolink.cli.service import verbs as service
 from robolink.cli.shared import graph
 from robolink.transport import zenoh
 
-type_lookup.ANSWER_WITHIN = call.PATIENCE = graph.PATIENCE = goal.PATIENCE = goal.CANCELED_WITHIN = 20.0
+type_lookup.ANSWER_WITHIN = service.PATIENCE = graph.PATIENCE = action.PATIENCE = action.CANCELED_WITHIN = 20.0
 zenoh.PATIENCE, zenoh.LONGEST, zenoh.LINK_WITHIN = 5.0, 30.0, 30.0
 sys.exit(main())
 """

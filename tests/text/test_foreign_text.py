@@ -22,7 +22,7 @@ from robolink.action import ActionServer
 from robolink.cli.main import main
 from robolink.cli.root import command
 from robolink.cli.shared.commands import NOUNS
-from robolink.cli.tf import monitor
+from robolink.cli.tf import watch
 from robolink.cli.topic import meters
 from robolink.exceptions import nearest
 from robolink.extensions.optional import is_here
@@ -295,9 +295,9 @@ def _end_after_a_look(monkeypatch: pytest.MonkeyPatch) -> None:
         if not str(text).startswith(("Subscribed", "Gathering")):
             raise KeyboardInterrupt
 
-    for module in (meters, monitor):
+    for module in (meters, watch):
         when_said(monkeypatch, module, "say", press)
-    when_said(monkeypatch, monitor, "say_json", press)
+    when_said(monkeypatch, watch, "say_json", press)
 
 
 @pytest.mark.parametrize(

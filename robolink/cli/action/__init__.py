@@ -6,17 +6,45 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli.action import names
 from robolink.cli.shared import complete
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from robolink.context import Context
 
 app = typer.Typer(no_args_is_help=True, help="See which actions there are, and send goals.")
 
+
+def action_names(incomplete: str) -> list[str]:
+    """Return the names of the actions that are served."""
+    names = {name for name, _ in _served()}
+    if incomplete and not incomplete.startswith("/"):
+        names = {each.removeprefix("/") for each in names}
+    return complete.offered(names, incomplete)
+
+
+def type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Return the types of the action on the command line; all action types if it has none."""
+    full_name = "/" + str(ctx.params.get("action") or "").lstrip("/")
+    types = {type_ for name, type_ in _served() if name == full_name}
+    return complete.offered(types, incomplete) or complete.action_types(incomplete)
+
+
+def _served() -> Iterator[tuple[str, str]]:
+    from robolink.action.graph import GOAL_TYPE, MARK, SEND_GOAL
+    from robolink.wire import EndpointKind, EndpointToken
+
+    for each in complete.announced():
+        if isinstance(each, EndpointToken) and each.kind is EndpointKind.SERVICE:
+            name, _, part = each.name.rpartition(MARK)
+            if name and part == SEND_GOAL:
+                yield name, each.type_name.removesuffix(GOAL_TYPE)
+
+
 Action = Annotated[
     str,
-    typer.Argument(help="Name of the action, such as /dock.", metavar="ACTION", autocompletion=names.action_names),
+    typer.Argument(help="Name of the action, such as /dock.", metavar="ACTION", autocompletion=action_names),
 ]
 ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Also show the types.")]
 AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
@@ -85,7 +113,7 @@ def show_info(
     as_json: AsJson = False,
 ) -> None:
     """Show which nodes serve an action, and which are its clients."""
-    from robolink.cli.action.info import show
+    from robolink.cli.action.verbs import show
 
     show(action, types=show_types, count=count, as_json=as_json)
 
@@ -96,9 +124,7 @@ def send_goal(
     action: Action,
     type_: Annotated[
         str,
-        typer.Argument(
-            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=names.type_of_action
-        ),
+        typer.Argument(help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=type_of_action),
     ] = "",
     values: Annotated[
         str | None, typer.Argument(help="The goal in YAML, such as '{order: 10}'.", metavar="[VALUES]")
@@ -114,7 +140,7 @@ def send_goal(
     as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each thing that is shown.")] = False,
 ) -> int:
     """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
-    from robolink.cli.action import goal
+    from robolink.cli.action import verbs
     from robolink.cli.shared.messages import is_type, read_stdin
 
     if values is None and not is_type(type_):  # ACTION VALUES: the type was left out
@@ -123,8 +149,8 @@ def send_goal(
         ctx.fail("either VALUES or --stdin, not both")
     if not 0 < timeout <= 1e9:
         ctx.fail(f"--timeout: expected a number of seconds above 0, got {timeout:g}")
-    manner = goal.Manner(feedback, timeout, as_json, node_name)
-    return goal.run(action, type_, read_stdin("goal") if from_stdin else values or "", manner)
+    manner = verbs.Manner(feedback, timeout, as_json, node_name)
+    return verbs.run(action, type_, read_stdin("goal") if from_stdin else values or "", manner)
 
 
 def _types(context: Context) -> dict[str, list[str]]:

@@ -1,15 +1,15 @@
-"""robolink bag convert: bags written anew, by rosbag2's YAML of output options or by flags."""
+"""robolink bag convert: its arguments, and the conversion."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli.bag import convert_options as opt
-from robolink.cli.bag.options import STORAGES, selection_of
+from robolink.cli.bag.options import STORAGES, names, selection_of
+from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say, tell
 
 if TYPE_CHECKING:
@@ -17,29 +17,73 @@ if TYPE_CHECKING:
     from robolink.bag.reader import Bag
 
 
+Names = list[str] | None
+"""Values of an option that takes several."""
+_FORMATS = ["zstd", "lz4", "none"]
+
+Words = Annotated[
+    Names, typer.Argument(metavar="[IN...] OUT", help="Bags to read, and the folder of the bag to write.")
+]
+Inputs = Annotated[
+    Names, typer.Option("--input", "-i", metavar="BAG [STORAGE]", help="A bag to read; as often as needed.")
+]
+OutputOptions = Annotated[
+    Path | None,
+    typer.Option("--output-options", "-o", metavar="YAML", help="File with rosbag2's options of the outputs."),
+]
+Storage = Annotated[str, choice("--storage", STORAGES, "Storage of the output", short="-s")]
+Compression = Annotated[str, choice("--compression", _FORMATS, "Compression, in an MCAP of its chunks")]
+CompressionMode = Annotated[
+    str, choice("--compression-mode", ["none", "file", "message"], "rosbag2's other ways to compress, by zstd")
+]
+CompressionFormat = Annotated[str, choice("--compression-format", _FORMATS, "ros2's name of --compression")]
+MaxSize = Annotated[
+    int, typer.Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Size at which a new file begins.")
+]
+MaxDuration = Annotated[
+    float, typer.Option("--max-bag-duration", "-d", metavar="S", min=0, help="Time after which a new file begins.")
+]
+Topics = Annotated[Names, names("--topics", help="Topics to keep; all by default.")]
+TopicTypes = Annotated[Names, names("--topic-types", help="Types of topics to keep.")]
+Services = Annotated[Names, names("--services", help="Services whose events to keep.")]
+Actions = Annotated[Names, names("--actions", help="Actions whose topics to keep.")]
+Regex = Annotated[str, typer.Option("--regex", "-e", help="Topics, services and actions to keep.")]
+ExcludeRegex = Annotated[str, typer.Option("--exclude-regex", help="Topics, services and actions to leave out.")]
+ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to leave out.")]
+ExcludeTypes = Annotated[Names, names("--exclude-topic-types", help="Types of topics to leave out.")]
+ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to leave out.")]
+ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to leave out.")]
+Offset = Annotated[
+    float, typer.Option("--start-offset", metavar="S", min=0, help="Seconds at the beginning to leave out.")
+]
+Duration = Annotated[
+    float, typer.Option("--duration", metavar="S", min=0, help="Seconds to keep from there; 0 is all.")
+]
+
+
 def convert_bags(
     ctx: typer.Context,
-    words: opt.Words = None,
-    inputs: opt.Inputs = None,
-    output_options: opt.OutputOptions = None,
-    storage: opt.Storage = "mcap",
-    compression: opt.Compression = "",
-    compression_mode: opt.CompressionMode = "",
-    compression_format: opt.CompressionFormat = "",
-    max_bag_size: opt.MaxSize = 0,
-    max_bag_duration: opt.MaxDuration = 0.0,
-    topics: opt.Topics = None,
-    topic_types: opt.TopicTypes = None,
-    services: opt.Services = None,
-    actions: opt.Actions = None,
-    regex: opt.Regex = "",
-    exclude_regex: opt.ExcludeRegex = "",
-    exclude_topics: opt.ExcludeTopics = None,
-    exclude_topic_types: opt.ExcludeTypes = None,
-    exclude_services: opt.ExcludeServices = None,
-    exclude_actions: opt.ExcludeActions = None,
-    start_offset: opt.Offset = 0.0,
-    duration: opt.Duration = 0.0,
+    words: Words = None,
+    inputs: Inputs = None,
+    output_options: OutputOptions = None,
+    storage: Storage = "mcap",
+    compression: Compression = "",
+    compression_mode: CompressionMode = "",
+    compression_format: CompressionFormat = "",
+    max_bag_size: MaxSize = 0,
+    max_bag_duration: MaxDuration = 0.0,
+    topics: Topics = None,
+    topic_types: TopicTypes = None,
+    services: Services = None,
+    actions: Actions = None,
+    regex: Regex = "",
+    exclude_regex: ExcludeRegex = "",
+    exclude_topics: ExcludeTopics = None,
+    exclude_topic_types: ExcludeTypes = None,
+    exclude_services: ExcludeServices = None,
+    exclude_actions: ExcludeActions = None,
+    start_offset: Offset = 0.0,
+    duration: Duration = 0.0,
 ) -> None:
     """Write bags anew: other compression, storage, files or topics; several become one.
 

@@ -1,4 +1,4 @@
-"""robolink bag play: its arguments and their checks."""
+"""robolink bag play: its arguments, in ros2's spelling."""
 
 from __future__ import annotations
 
@@ -6,17 +6,79 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from robolink.cli.bag import options as shared
-from robolink.cli.bag import play_options as opt
+from robolink.cli.bag.options import flag, names
 from robolink.cli.shared.noun import ListedOptions
-from robolink.cli.shared.options import Enclave
+from robolink.cli.shared.options import Enclave, choice, seconds
 
 if TYPE_CHECKING:
     from robolink.bag.playing import PlaySettings
+
+
+Names = list[str] | None
+
+
+Bags = Annotated[Names, typer.Argument(metavar="[BAG]...", help="Bags to play, merged by time.", show_default=False)]
+Inputs = Annotated[Names, names("--input", "-i", metavar="BAG [STORAGE]", help="A bag to play; as often as needed.")]
+Rate = Annotated[float, typer.Option("--rate", "-r", metavar="X", help="Times as fast as recorded.")]
+Topics = Annotated[Names, names("--topics", help="Topics to play; all by default.")]
+Services = Annotated[Names, names("--services", help="Services whose events to play.")]
+Actions = Annotated[Names, names("--actions", help="Actions whose topics to play.")]
+Regex = Annotated[str, typer.Option("--regex", "-e", metavar="REGEX", help="Play what has this in its name.")]
+ExcludeRegex = Annotated[
+    str, typer.Option("--exclude-regex", "-x", "--exclude", metavar="REGEX", help="Leave out such names.")
+]
+ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to leave out.")]
+ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to leave out.")]
+ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to leave out.")]
+Loop = Annotated[bool, flag("--loop", "-l", help="Begin again at the end.")]
+Remap = Annotated[Names, names("--remap", "-m", metavar="OLD:=NEW...", help="Other names for topics.")]
+ClockRate = Annotated[
+    str, typer.Option("--clock", metavar="[HZ]", help="Publish the bag's time on /clock, at 40 Hz by default.")
+]
+ClockTopics = Annotated[Names, names("--clock-topics", help="Publish /clock before each message of these topics.")]
+ClockAll = Annotated[bool, flag("--clock-topics-all", help="Publish /clock before each message.")]
+Delay = Annotated[float, seconds("--delay", "Wait before the first message, of each round of a loop.", short="-d")]
+Duration = Annotated[float, typer.Option("--playback-duration", metavar="S", help="Seconds of the bag; all below 0.")]
+UntilSec = Annotated[
+    float, typer.Option("--playback-until-sec", metavar="S", help="End at this time, in seconds since 1970.")
+]
+UntilNsec = Annotated[
+    int, typer.Option("--playback-until-nsec", metavar="NS", help="End at this time, in nanoseconds since 1970.")
+]
+Paused = Annotated[bool, flag("--start-paused", "-p", help="Start in a pause.")]
+Offset = Annotated[float, seconds("--start-offset", "Begin so many seconds after the start of the bag.")]
+Acked = Annotated[int, typer.Option("--wait-for-all-acked", metavar="MS", help="Accepted: nothing is acknowledged.")]
+Loan = Annotated[bool, typer.Option("--disable-loan-message", hidden=True)]
+StorageConfig = Annotated[str, typer.Option("--storage-config-file", metavar="FILE", hidden=True)]
+Requests = Annotated[
+    bool, flag("--publish-service-requests", help="Call the services instead of publishing their events.")
+]
+Source = Annotated[
+    str,
+    choice(
+        "--service-requests-source",
+        ["service_introspection", "client_introspection"],
+        "Which recorded requests are sent: those received, or those sent",
+    ),
+]
+Order = Annotated[str, choice("--message-order", ["received", "sent"], "Time that counts")]
+UpdateRate = Annotated[
+    float, typer.Option("--progress-bar-update-rate", metavar="HZ", help="Of the progress line; none below 0.")
+]
+Separation = Annotated[int, typer.Option("--progress-bar-separation-lines", hidden=True)]
+ReadAhead = Annotated[
+    int,
+    typer.Option(
+        "--read-ahead-queue-size", metavar="N", min=1, max=2**31, help="Messages sorted by --message-order sent."
+    ),
+]
+NodeName = Annotated[str, typer.Option("--node-name", metavar="NAME", help="Name of the player's node.")]
+
 
 CLOCK, CLOCK_RATE = "--clock", "40"
 FAR = 1e12
@@ -50,41 +112,41 @@ def with_clock_rate(args: Sequence[str]) -> list[str]:
 
 def play(
     ctx: typer.Context,
-    words: opt.Bags = None,
-    inputs: opt.Inputs = None,
+    words: Bags = None,
+    inputs: Inputs = None,
     storage: shared.KnownStorage = "",
-    rate: opt.Rate = 1.0,
-    topics: opt.Topics = None,
-    services: opt.Services = None,
-    actions: opt.Actions = None,
-    regex: opt.Regex = "",
-    exclude_regex: opt.ExcludeRegex = "",
-    exclude_topics: opt.ExcludeTopics = None,
-    exclude_services: opt.ExcludeServices = None,
-    exclude_actions: opt.ExcludeActions = None,
+    rate: Rate = 1.0,
+    topics: Topics = None,
+    services: Services = None,
+    actions: Actions = None,
+    regex: Regex = "",
+    exclude_regex: ExcludeRegex = "",
+    exclude_topics: ExcludeTopics = None,
+    exclude_services: ExcludeServices = None,
+    exclude_actions: ExcludeActions = None,
     qos_overrides: shared.Overrides = "",
-    loop: opt.Loop = False,
-    remap: opt.Remap = None,
-    clock: opt.ClockRate = "",
-    clock_topics: opt.ClockTopics = None,
-    clock_topics_all: opt.ClockAll = False,
-    delay: opt.Delay = 0.0,
-    playback_duration: opt.Duration = -1.0,
-    playback_until_sec: opt.UntilSec = -1.0,
-    playback_until_nsec: opt.UntilNsec = -1,
-    start_paused: opt.Paused = False,
-    start_offset: opt.Offset = 0.0,
-    wait_for_all_acked: opt.Acked = -1,
+    loop: Loop = False,
+    remap: Remap = None,
+    clock: ClockRate = "",
+    clock_topics: ClockTopics = None,
+    clock_topics_all: ClockAll = False,
+    delay: Delay = 0.0,
+    playback_duration: Duration = -1.0,
+    playback_until_sec: UntilSec = -1.0,
+    playback_until_nsec: UntilNsec = -1,
+    start_paused: Paused = False,
+    start_offset: Offset = 0.0,
+    wait_for_all_acked: Acked = -1,
     no_keys: shared.NoKeys = False,
-    disable_loan_message: opt.Loan = False,
-    storage_config: opt.StorageConfig = "",
-    publish_service_requests: opt.Requests = False,
-    service_requests_source: opt.Source = "service_introspection",
-    message_order: opt.Order = "received",
-    progress_rate: opt.UpdateRate = 3.0,
-    separation: opt.Separation = 3,
-    read_ahead: opt.ReadAhead = 1000,
-    node_name: opt.NodeName = "rosbag2_player",
+    disable_loan_message: Loan = False,
+    storage_config: StorageConfig = "",
+    publish_service_requests: Requests = False,
+    service_requests_source: Source = "service_introspection",
+    message_order: Order = "received",
+    progress_rate: UpdateRate = 3.0,
+    separation: Separation = 3,
+    read_ahead: ReadAhead = 1000,
+    node_name: NodeName = "rosbag2_player",
     log_level: shared.LogLevel = "info",
     enclave: Enclave = "",
 ) -> None:

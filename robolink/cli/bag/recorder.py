@@ -1,18 +1,19 @@
-"""Run of `robolink bag record`: a node with rosbag2's services, keys, a progress line, and an end in order."""
+"""A recording that goes on in a terminal: its keys, its lines and its figures."""
 
 from __future__ import annotations
 
 import contextlib
 import time
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.bag.background_spin import BackgroundSpin
-from robolink.bag.recording import RecordSettings
+from robolink.bag.information import size_text
+from robolink.bag.recording import Figures, RecordSettings
 from robolink.bag.recording.served import ServedRecording
 from robolink.bag.selection import Selection
 from robolink.cli.bag.progress_line import ProgressLine
-from robolink.cli.bag.recording_lines import as_data, progress, summary
 from robolink.cli.shared.output import complain, say, say_json
 from robolink.cli.shared.session import opened
 from robolink.cli.shared.terminal import keys
@@ -23,6 +24,68 @@ from robolink.system import clocks
 
 if TYPE_CHECKING:
     from robolink.context import Context
+
+
+MOST_NAMED = 3
+"""Most topics with losses that the progress line names."""
+
+
+def progress(now: Figures, before: Figures) -> str:
+    """Return the progress line: time, messages, size, rate since a moment ago, and what was dropped and lost."""
+    spent = now.seconds - before.seconds
+    rate = (now.messages - before.messages) / spent if spent > 0 else 0.0
+    speed = (now.bytes - before.bytes) / spent if spent > 0 else 0.0
+    parts = [
+        "[paused]" if now.paused else "[recording]",
+        clock(now.seconds),
+        f"{now.messages:,} messages ({rate:,.0f}/s)",
+        f"{size_text(now.bytes)} ({size_text(round(speed))}/s)",
+        f"{now.topics} topics",
+        *losses(now),
+    ]
+    return "  ".join(parts)
+
+
+def summary(figures: Figures) -> list[str]:
+    """Return the lines for the end of a recording."""
+    first = (
+        f"{figures.path}: {figures.messages:,} messages of {figures.topics} topics in {clock(figures.seconds)},"
+        f" {size_text(figures.bytes)}"
+    )
+    rows = [
+        (f"dropped, since they came faster than they could be written: {name}", count)
+        for name, count in figures.dropped.items()
+    ]
+    rows += [(f"lost on the way: {name}", count) for name, count in figures.lost.items()]
+    return [first, *(f"  {text} {count:,}" for text, count in rows)]
+
+
+def as_data(figures: Figures) -> dict[str, Any]:
+    """Return figures for JSON."""
+    return {**figures._asdict(), "path": str(figures.path)}
+
+
+def losses(figures: Figures) -> list[str]:
+    """Return what was dropped and lost, in short; nothing where nothing was."""
+    return [*_named("dropped", figures.dropped), *_named("lost", figures.lost)]
+
+
+def _named(what: str, counts: Mapping[str, int]) -> list[str]:
+    if not counts:
+        return []
+    worst = sorted(counts, key=lambda name: -counts[name])[:MOST_NAMED]
+    more = f" and {len(counts) - len(worst)} more" if len(counts) > len(worst) else ""
+    return [f"{what} {sum(counts.values()):,} ({', '.join(f'{name} {counts[name]:,}' for name in worst)}{more})"]
+
+
+def clock(seconds: float) -> str:
+    """Return a time as `12.3 s`, `2:03 min` or `1:02:03 h`."""
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(int(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02} h" if hours else f"{minutes}:{rest:02} min"
+
 
 LOOK = 0.2
 """Time in seconds from one look at what has ended the recording to the next."""

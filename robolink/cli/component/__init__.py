@@ -30,13 +30,13 @@ def list_components(
     containers_only: Annotated[bool, typer.Option("--containers-only", help="Only the containers' names.")] = False,
 ) -> None:
     """List the containers that run, and the nodes in each, with their numbers."""
-    from robolink.cli.component import asking
+    from robolink.cli.component import verbs
 
     if containers_only:
-        for each in asking.containers():
+        for each in verbs.containers():
             say(each)
         return
-    for name, nodes in asking.listed(container):
+    for name, nodes in verbs.listed(container):
         if not container:
             say(name)
         for number, node in nodes:
@@ -46,9 +46,9 @@ def list_components(
 @app.command("types")
 def types(package: Annotated[str, typer.Argument(metavar="PACKAGE", help="Only those of this one.")] = "") -> None:
     """List the components that packages offer: in C++ those that were installed, in Python classes of nodes."""
-    from robolink.cli.component import offers
+    from robolink.cli.component import verbs
 
-    for name, found in offers.offered(package):
+    for name, found in verbs.offered(package):
         say("\n".join([name, *(f"  {each}" for each in found)]))
 
 
@@ -80,12 +80,12 @@ def load(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the number.")] = False,
 ) -> None:
     """Load a node into a running container."""
-    from robolink.cli.component import asking
+    from robolink.cli.component import verbs
 
-    wanted = asking.Wanted(
+    wanted = verbs.Wanted(
         package, plugin, name, namespace, LEVELS[log_level], remap or [], parameters or [], extra or []
     )
-    answer = asking.load(container, wanted)
+    answer = verbs.load(container, wanted)
     text = f"Loaded component {answer.unique_id} into '{container}' container node as '{answer.full_node_name}'"
     say(str(answer.unique_id) if quiet else text)
 
@@ -96,10 +96,10 @@ def unload(
     numbers: Annotated[list[int], typer.Argument(metavar="NUMBER...", min=0, help="Numbers that list shows.")],
 ) -> None:
     """Take nodes out of a container."""
-    from robolink.cli.component import asking
+    from robolink.cli.component import verbs
 
     for number in numbers:
-        asking.unload(container, number)
+        verbs.unload(container, number)
         say(f"Unloaded component {number} from '{container}' container node")
 
 
@@ -118,9 +118,9 @@ def standalone(
     ] = "",
 ) -> None:
     """Run a container with one node in it, until Ctrl-C."""
-    from robolink.cli.component import alone, asking
+    from robolink.cli.component import verbs
 
-    wanted = asking.Wanted(
+    wanted = verbs.Wanted(
         package, plugin, name, namespace, LEVELS[log_level], remap or [], parameters or [], extra or []
     )
-    alone.run(wanted, container)
+    verbs.run(wanted, container)

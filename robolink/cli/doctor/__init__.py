@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from robolink.cli.doctor.facts import Check, Verdict
     from robolink.cli.doctor.report import Section
-    from robolink.cli.doctor.verdict import Check, Verdict
 
 app = typer.Typer(no_args_is_help=False)
 
@@ -73,7 +73,7 @@ def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str
 
 def _passed(levels: list[str]) -> str:
     """Return in words how many checks have passed, and how many not."""
-    from robolink.cli.doctor.verdict import OK, UNKNOWN, WARNING, count
+    from robolink.cli.doctor.facts import OK, UNKNOWN, WARNING, count
 
     if levels.count(OK) == len(levels):
         return f"All {len(levels)} checks passed"
@@ -85,7 +85,7 @@ def _passed(levels: list[str]) -> str:
 def _json(verdicts: list[tuple[Check, Verdict]], failed: list[str], shown: list[Section]) -> str:
     import msgspec
 
-    from robolink.cli.doctor.verdict import OK
+    from robolink.cli.doctor.facts import OK
 
     checks = [
         {

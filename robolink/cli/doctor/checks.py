@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from robolink.cli.doctor.facts import ClockOffset, Facts
-from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.cli.doctor.facts import Check, ClockOffset, Facts, Verdict, count, listed
 from robolink.networks.asked import NETWORK
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, Port
 from robolink.networks.refusals import HAS_NO_KEYS, WANTS_KEYS

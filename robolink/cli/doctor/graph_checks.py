@@ -6,8 +6,7 @@ import collections
 import itertools
 from collections.abc import Iterable
 
-from robolink.cli.doctor.facts import Facts
-from robolink.cli.doctor.verdict import Check, Verdict, count, listed
+from robolink.cli.doctor.facts import Check, Facts, Verdict, count, listed
 from robolink.exceptions import nearest
 from robolink.qos import DurabilityPolicy
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken

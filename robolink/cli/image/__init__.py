@@ -33,8 +33,7 @@ def save(
     timeout: Timeout = None,
 ) -> None:
     """Save the next images of a topic as files. Distances (32FC1, in m) become whole millimetres of 16 bits."""
-    from robolink.cli.image.listening import each_image
-    from robolink.cli.image.saving import Files
+    from robolink.cli.image.verbs import Files, each_image
 
     each_image(topic, count, timeout, Files(file, count).save)
 
@@ -46,7 +45,7 @@ def show(
     timeout: Timeout = None,
 ) -> None:
     """Show the images of a topic in the terminal, until Ctrl-C; `robolink view` shows them in the browser."""
-    from robolink.cli.image.listening import each_image
+    from robolink.cli.image.verbs import each_image
     from robolink.cli.shared.output import clear, say
     from robolink.cli.shared.picture import PictureError, check_terminal, drawn
     from robolink.image import ImageError, to_array, to_message

@@ -16,7 +16,7 @@ PREFIXES = "--param-prefixes"
 
 
 def _parameters(ctx: typer.Context, incomplete: str) -> list[str]:
-    from robolink.cli.param.names import of_node
+    from robolink.cli.param.values import of_node
 
     return of_node(ctx, incomplete)
 
@@ -73,10 +73,10 @@ def list_parameters(
     as_json: AsJson = False,
 ) -> None:
     """List the parameters of a node, or of all nodes."""
-    from robolink.cli.param import read
+    from robolink.cli.param import verbs
 
-    wanted = read.Wanted(tuple(prefixes or ()), read.compiled(pattern), show_types, hidden)
-    read.show_list(node, wanted, as_json=as_json)
+    wanted = verbs.Wanted(tuple(prefixes or ()), verbs.compiled(pattern), show_types, hidden)
+    verbs.show_list(node, wanted, as_json=as_json)
 
 
 @app.command("get")
@@ -89,9 +89,9 @@ def get(
     as_json: AsJson = False,
 ) -> None:
     """Show the value of a parameter."""
-    from robolink.cli.param import read
+    from robolink.cli.param import verbs
 
-    read.show_value(node, parameter, timeout, hide_type=hide_type, as_json=as_json)
+    verbs.show_value(node, parameter, timeout, hide_type=hide_type, as_json=as_json)
 
 
 @app.command("describe")
@@ -105,17 +105,17 @@ def describe(
     as_json: AsJson = False,
 ) -> None:
     """Show what parameters are for, and what they can be."""
-    from robolink.cli.param import read
+    from robolink.cli.param import verbs
 
-    read.show_descriptors(node, parameters, timeout, as_json=as_json)
+    verbs.show_descriptors(node, parameters, timeout, as_json=as_json)
 
 
 @app.command("dump")
 def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False) -> None:
     """Write all parameters of a node as a parameter file."""
-    from robolink.cli.param import read
+    from robolink.cli.param import verbs
 
-    read.dump(node, timeout, as_json=as_json)
+    verbs.dump(node, timeout, as_json=as_json)
 
 
 # A value such as -0.5 is no option.
@@ -129,9 +129,9 @@ def set_parameter(
     as_json: AsJson = False,
 ) -> None:
     """Set a parameter."""
-    from robolink.cli.param import write
+    from robolink.cli.param import verbs
 
-    raise typer.Exit(write.set_one(node, parameter, value, timeout, as_json=as_json))
+    raise typer.Exit(verbs.set_one(node, parameter, value, timeout, as_json=as_json))
 
 
 @app.command("load")
@@ -146,9 +146,9 @@ def load(
     as_json: AsJson = False,
 ) -> None:
     """Set the parameters of a node that a file has for it."""
-    from robolink.cli.param import write
+    from robolink.cli.param import verbs
 
-    raise typer.Exit(write.load(node, file, timeout, use_wildcard=not no_wildcard, as_json=as_json))
+    raise typer.Exit(verbs.load(node, file, timeout, use_wildcard=not no_wildcard, as_json=as_json))
 
 
 @app.command("delete")
@@ -156,6 +156,6 @@ def delete(
     node: Node, parameter: Parameter, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False
 ) -> None:
     """Undeclare a parameter; only those of dynamic type can be."""
-    from robolink.cli.param import write
+    from robolink.cli.param import verbs
 
-    raise typer.Exit(write.delete(node, parameter, timeout, as_json=as_json))
+    raise typer.Exit(verbs.delete(node, parameter, timeout, as_json=as_json))

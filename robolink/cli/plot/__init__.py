@@ -50,9 +50,9 @@ def plot_odometry(
     bag: Recording = None,
 ) -> None:
     """Draw the way of whatever messages say where something is: Odometry, PoseStamped and the like."""
-    from robolink.cli.plot import record, trajectories
+    from robolink.cli.plot import drawing, messages
 
-    trajectories.run(topics or [], trajectories.POSES, world, record.Wish(out, duration, bag))
+    drawing.plot_trajectories(topics or [], drawing.POSES, world, messages.Wish(out, duration, bag))
 
 
 @app.command("path")
@@ -71,9 +71,9 @@ def plot_path(
     bag: Recording = None,
 ) -> None:
     """Draw the paths that were published last, over the world."""
-    from robolink.cli.plot import record, trajectories
+    from robolink.cli.plot import drawing, messages
 
-    trajectories.run(topics or [], trajectories.PATHS, world, record.Wish(out, duration, bag))
+    drawing.plot_trajectories(topics or [], drawing.PATHS, world, messages.Wish(out, duration, bag))
 
 
 @app.command("topic")
@@ -91,6 +91,6 @@ def plot_topic(
     bag: Recording = None,
 ) -> None:
     """Draw values over time."""
-    from robolink.cli.plot import record, values
+    from robolink.cli.plot import drawing, messages
 
-    values.run(fields, record.Wish(out, duration, bag))
+    drawing.plot_fields(fields, messages.Wish(out, duration, bag))

@@ -83,7 +83,7 @@ def show_info(
     as_json: AsJson = False,
 ) -> None:
     """Show a service's type, and how many serve and call it."""
-    from robolink.cli.service.info import show
+    from robolink.cli.service.verbs import show
 
     show(service, verbose=verbose, as_json=as_json)
 
@@ -112,17 +112,17 @@ def call_service(
     as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each call.")] = False,
 ) -> None:
     """Call a service and show what it answers."""
-    from robolink.cli.service import call
+    from robolink.cli.service import verbs
     from robolink.cli.shared.messages import is_type, read_stdin
 
     if values is None and not is_type(type_):  # SERVICE VALUES: the type was left out
         type_, values = "", type_
     if from_stdin and values:
         ctx.fail("either VALUES or --stdin, not both")
-    manner = call.Manner(rate, timeout, as_json, node_name)
+    manner = verbs.Manner(rate, timeout, as_json, node_name)
     if manner.problem():
         ctx.fail(manner.problem())
-    call.run(service, type_, read_stdin("request") if from_stdin else values or "", manner)
+    verbs.call(service, type_, read_stdin("request") if from_stdin else values or "", manner)
 
 
 @app.command("echo")
@@ -147,13 +147,13 @@ def echo_events(
     flow: Annotated[bool, typer.Option("--flow-style", help="YAML in one line: {a: [1, 2]}.")] = False,
 ) -> None:
     """Show what a service and its clients say to each other, where introspection is on; until Ctrl-C."""
-    from robolink.cli.service import echo
+    from robolink.cli.service import verbs
     from robolink.cli.shared.messages import Style
 
     if csv and as_json:
         ctx.fail("--csv and --json do not go together")
     style = Style(None if full_length else length, not no_arr, not no_str, flow)
-    echo.run(service, type_, echo.Format(style, csv, as_json), once=once)
+    verbs.echo(service, type_, verbs.Format(style, csv, as_json), once=once)
 
 
 def _types(context: Context, *, hidden: bool = True) -> dict[str, list[str]]:

@@ -25,9 +25,9 @@ def echo_transform(
     as_json: AsJson = False,
 ) -> None:
     """Show where TARGET_FRAME is in SOURCE_FRAME, again and again. Arguments and output are those of tf2_echo."""
-    from robolink.cli.tf import echo
+    from robolink.cli.tf import watch
 
-    echo.run(source, target, echo.Wish(rate, once, timeout, as_json))
+    watch.echo(source, target, watch.Wish(rate, once, timeout, as_json))
 
 
 @app.command("monitor")
@@ -39,11 +39,11 @@ def monitor_transforms(
     as_json: AsJson = False,
 ) -> None:
     """Show who publishes transforms, how often, and how late they come, until Ctrl-C."""
-    from robolink.cli.tf import monitor
+    from robolink.cli.tf import watch
 
     if source and not target:
         ctx.fail("two frames, or none")
-    monitor.run(source, target, period, json=as_json)
+    watch.monitor(source, target, period, json=as_json)
 
 
 @app.command("tree")

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from robolink.cli.shared.output import say
-from robolink.cli.tf import echo, monitor, tree
+from robolink.cli.tf import tree, watch
 from robolink.exceptions import RobolinkError
 from robolink.system import clocks
 from robolink.utilities import remove_ros_args
@@ -33,7 +33,7 @@ def tf2_echo() -> None:
         raise UsageError(f"expected two frames and perhaps a rate, got {len(words)} words: {ECHO_USAGE}")
     rate = _number("RATE", words[2]) if len(words) == 3 else 1.0
     with contextlib.suppress(BrokenPipeError):  # `| head` has enough: no error of this program
-        echo.run(words[0], words[1], echo.Wish(rate))
+        watch.echo(words[0], words[1], watch.Wish(rate))
 
 
 def tf2_monitor() -> None:
@@ -45,7 +45,7 @@ def tf2_monitor() -> None:
         )
     source, target = words or ("", "")
     with contextlib.suppress(BrokenPipeError):
-        monitor.run(source, target, 10.0, json=False)
+        watch.monitor(source, target, 10.0, json=False)
 
 
 def view_frames() -> None:

@@ -26,7 +26,7 @@ def top(
     as_json: Annotated[bool, typer.Option("--json", help="A JSON object on a line for each interval.")] = False,
 ) -> None:
     """Show nodes with CPU and memory, topics with rate, bandwidth, age and loss, until q or Ctrl-C."""
-    from robolink.cli.top import run
+    from robolink.cli.top import screen
     from robolink.cli.top.table import ORDERS, View
     from robolink.exceptions import nearest
 
@@ -35,4 +35,4 @@ def top(
             f"no order named '{sort}'{nearest(sort, ORDERS)}: {', '.join(ORDERS)}", param_hint="--sort"
         )
     view = View(order=sort, filter=filter_, hidden=show_all)
-    run.top(view, every, once=once, json=as_json, with_traffic=not no_traffic)
+    screen.top(view, every, once=once, json=as_json, with_traffic=not no_traffic)

@@ -1,20 +1,245 @@
-"""Measurement for `robolink top`: the graph, the counts of messages and the processes become rows."""
+"""Measurements of `top`: traffic of topics, processes of nodes, and both in an interval."""
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import queue
+import threading
 from collections import Counter, defaultdict
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import psutil
 
 from robolink.cli.shared.session import ReportedLosses
-from robolink.cli.top.processes import Processes
 from robolink.cli.top.table import NodeRow, Shown, TopicRow
-from robolink.cli.top.traffic import Count, Traffic
-from robolink.system import clocks
-from robolink.wire import EndpointKind, EndpointToken
+from robolink.exceptions import RobolinkError, TransportClosedError
+from robolink.graph.endpoint import ALL_BEST_EFFORT, keys_of, listen, timed_arrival
+from robolink.graph.graph import EVERY
+from robolink.system import clocks, waits
+from robolink.wire import EndpointKind, EndpointToken, is_attachment, unpack_attachment
 
 if TYPE_CHECKING:
     from robolink.node import Node
+    from robolink.transport.base import Handle
+    from robolink.transport.reach import Link
+
+
+class Count(NamedTuple):
+    """Traffic since the beginning: `last` is the time of the last arrival, in ns of the steady clock, 0 for none."""
+
+    messages: int = 0
+    bytes: int = 0
+    lost: int = 0
+    last: int = 0
+
+
+class _Counter:
+    """Counter of one publisher's messages, or of those of unknown senders, on a topic."""
+
+    __slots__ = ("bytes", "last", "lost", "messages", "sequence")
+
+    def __init__(self) -> None:
+        self.messages = self.bytes = self.lost = self.last = self.sequence = 0
+
+    def add(self, size: int, at: int, sequence: int) -> None:
+        """Count a message; numbers that are missing between it and the one before are lost messages."""
+        if self.sequence and sequence > self.sequence:
+            self.lost += sequence - self.sequence - 1
+        self.sequence = sequence
+        self.messages += 1
+        self.bytes += size
+        self.last = at
+
+    def count(self) -> Count:
+        return Count(self.messages, self.bytes, self.lost, self.last)
+
+
+class Traffic:
+    """Listener to every topic of a node's domain, those that come later included.
+
+    Args:
+        node: Node whose subscriptions they are. It must be hidden: commands' nodes are.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._transport = node.context.transport
+        self._queue: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._arrival = timed_arrival(self._queue.put, clocks.steady)
+        self._counters: defaultdict[str, defaultdict[bytes, _Counter]] = defaultdict(lambda: defaultdict(_Counter))
+        self._lock = threading.Lock()
+        self._heard: set[str] = set()
+        self._handles: list[Handle] = []
+        self._thread = threading.Thread(target=self._drain, name="robolink traffic", daemon=True)
+        self._thread.start()
+        self._following = node.context.graph.follow(EVERY, EndpointKind.PUBLISHER, self._on_publisher)
+
+    def counts(self) -> dict[tuple[str, bytes], Count]:
+        """Return the counts of each topic and publisher, by the topic's name and the publisher's gid."""
+        with self._lock:
+            return {
+                (name, gid): counter.count()
+                for name, senders in self._counters.items()
+                for gid, counter in senders.items()
+            }
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._following.close()
+        for each in self._handles:
+            each.close()
+        self._queue.put(None)
+        waits.join(self._thread, 1.0)
+
+    def _on_publisher(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        keys = keys_of(token) - self._heard
+        if not alive or not keys:
+            return
+        self._heard |= keys
+        try:
+            sink = functools.partial(self._arrival, token.name)
+            self._handles += listen(self._node._owner_, token, keys, ALL_BEST_EFFORT, sink)
+        except TransportClosedError:  # the command ends just now
+            return
+
+    def _drain(self) -> None:
+        transport = self._transport
+        for arrived in iter(self._queue.get, None):
+            try:
+                size, attachment = transport.size(arrived.content), transport.attachment(arrived.content)
+            except RobolinkError:  # overwritten by its sender while it waited
+                continue
+            sequence, gid = 0, b""
+            if is_attachment(attachment):
+                sequence, _, gid = unpack_attachment(attachment)
+            with self._lock:
+                self._counters[arrived.target][gid].add(size, arrived.at, sequence)
+
+
+LOOK_AGAIN = 2.0
+"""Least interval between two looks at the system's connections, in seconds: one takes some ten milliseconds."""
+
+ANSWER_WITHIN = 0.2
+"""Longest wait for a launcher's answer, in seconds."""
+
+Ends = tuple[str, str]
+"""Address and port, as `HOST:PORT`, of both ends of a connection, the holder's first."""
+
+
+class Usage(NamedTuple):
+    """Resource use of a process: CPU in percent of one core since the last look, None at the first; memory in bytes."""
+
+    pid: int
+    cpu: float | None
+    memory: int
+
+
+def sessions_here(links: Iterable[Link], holders: Mapping[Ends, int]) -> dict[str, int]:
+    """Return the process id of each session that has a connection with us on this machine.
+
+    Args:
+        links: Our connections.
+        holders: Process ids of the connections of this machine, by their ends.
+    """
+    found = {}
+    for link in links:
+        pid = holders.get((_place(link.there), _place(link.here)))
+        if pid is not None:
+            found[link.session] = pid
+    return found
+
+
+def _place(locator: str) -> str:
+    """Return `HOST:PORT` of a locator of Zenoh's, such as `tcp/127.0.0.1:7447?rel=1`."""
+    return locator.partition("/")[2].partition("?")[0].replace("[", "").replace("]", "").replace("::ffff:", "")
+
+
+def holders_of_connections() -> dict[Ends, int]:
+    """Return the holders of this machine's TCP connections, as far as the user may know them."""
+    found: dict[Ends, int] = {}
+    for each, pid in _connections():
+        if pid and each.raddr:
+            here, there = (f"{host}:{port}".replace("::ffff:", "") for host, port in (each.laddr, each.raddr))
+            found[here, there] = pid
+    return found
+
+
+def _connections() -> Iterable[tuple[Any, int | None]]:
+    try:
+        return [(each, each.pid) for each in psutil.net_connections("tcp")]
+    except psutil.Error:  # macOS lists all to root only: each process is asked, and others' refuse
+        found: list[tuple[Any, int | None]] = []
+        for process in psutil.process_iter():
+            with contextlib.suppress(psutil.Error, OSError):
+                found += [(each, process.pid) for each in process.net_connections("tcp")]
+        return found
+
+
+def launched_here() -> dict[str, int]:
+    """Return the process ids of the nodes that launchers of this user have started, by name."""
+    from robolink.supervisor.control.client import LauncherError, running
+
+    found = {}
+    for launcher in running():
+        with contextlib.suppress(LauncherError):
+            found.update({each.name: each.pid for each in launcher.status(ANSWER_WITHIN).nodes if each.pid})
+    return found
+
+
+class Processes:
+    """Look-up of sessions' processes, and of what these use, from one look to the next.
+
+    Args:
+        links: Function that returns our connections.
+    """
+
+    def __init__(self, links: Callable[[], Iterable[Link]]) -> None:
+        self._links = links
+        self._pids: dict[str, int] = {}
+        self._seen: frozenset[str] = frozenset()
+        self._looked = -LOOK_AGAIN
+        self._processes: dict[int, psutil.Process] = {}
+
+    def look(self, sessions: Mapping[str, Sequence[str]]) -> dict[str, Usage]:
+        """Return what the sessions of this machine use, by session.
+
+        Args:
+            sessions: Full names of the nodes of each session.
+        """
+        here = frozenset(sessions)
+        missing, now = here - self._pids.keys(), clocks.monotonic()
+        if missing and (here != self._seen or now - self._looked > LOOK_AGAIN):
+            self._seen, self._looked = here, now
+            self._pids = self._found(sessions)
+        pids = {session: self._pids[session] for session in sessions if session in self._pids}
+        used = {pid: usage for pid in set(pids.values()) if (usage := self._used(pid)) is not None}
+        return {session: used[pid] for session, pid in pids.items() if pid in used}
+
+    def _found(self, sessions: Mapping[str, Sequence[str]]) -> dict[str, int]:
+        found = sessions_here(self._links(), holders_of_connections())
+        launched = launched_here() if sessions.keys() - found.keys() else {}
+        for session in sessions.keys() - found.keys():
+            names = (name for full in sessions[session] for name in (full, full.rpartition("/")[2]))
+            pid = next((launched[name] for name in names if name in launched), None)
+            if pid is not None:
+                found[session] = pid
+        return found
+
+    def _used(self, pid: int) -> Usage | None:
+        """Return what a process uses; None if it has ended."""
+        try:
+            process = self._processes.get(pid)
+            if process is None:
+                process = self._processes[pid] = psutil.Process(pid)
+                process.cpu_percent()  # counts from here on
+                return Usage(pid, None, process.memory_info().rss)
+            return Usage(pid, process.cpu_percent(), process.memory_info().rss)
+        except (psutil.Error, OSError):
+            self._processes.pop(pid, None)
+            return None
+
 
 NS = 1e-9
 

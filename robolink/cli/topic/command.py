@@ -7,7 +7,6 @@ import sys
 import typer
 
 from robolink.cli.topic import options as opt
-from robolink.cli.topic import qos_options as qos
 
 app = typer.Typer(no_args_is_help=True, help="See and send what nodes publish.")
 
@@ -119,13 +118,13 @@ def echo_messages(
     image: opt.AsImage = False,
     no_lost: opt.NoLost = False,
     node_name: opt.NodeName = "",
-    qos_profile: qos.Profile = "",
-    qos_depth: qos.Depth = None,
-    qos_history: qos.History = "",
-    qos_reliability: qos.Reliability = "",
-    qos_durability: qos.Durability = "",
-    qos_liveliness: qos.Liveliness = "",
-    qos_lease: qos.Lease = None,
+    qos_profile: opt.Profile = "",
+    qos_depth: opt.Depth = None,
+    qos_history: opt.History = "",
+    qos_reliability: opt.Reliability = "",
+    qos_durability: opt.Durability = "",
+    qos_liveliness: opt.Liveliness = "",
+    qos_lease: opt.Lease = None,
 ) -> None:
     """Show what is published on a topic, until Ctrl-C."""
     from robolink.cli.shared.messages import Style
@@ -137,7 +136,7 @@ def echo_messages(
         from robolink.cli.shared.picture import check_terminal
 
         check_terminal(sys.stdout.isatty())
-    flags = qos.flags_of(ctx.params)
+    flags = opt.flags_of(ctx.params)
     style = Style(None if full_length else length, not no_arr, not no_str, flow)
     wish = Wish(type_, once, timeout, filter_, not no_lost, node_name, flags)
     run(topic, wish, Format(field, style, as_json, csv, raw, info, clear or image, image))
@@ -159,13 +158,13 @@ def publish(
     print_every: opt.PrintEvery = 1,
     node_name: opt.NodeName = "",
     sim_time: opt.SimTime = False,
-    qos_profile: qos.Profile = "",
-    qos_depth: qos.Depth = None,
-    qos_history: qos.History = "",
-    qos_reliability: qos.Reliability = "",
-    qos_durability: qos.Durability = "",
-    qos_liveliness: qos.Liveliness = "",
-    qos_lease: qos.Lease = None,
+    qos_profile: opt.Profile = "",
+    qos_depth: opt.Depth = None,
+    qos_history: opt.History = "",
+    qos_reliability: opt.Reliability = "",
+    qos_durability: opt.Durability = "",
+    qos_liveliness: opt.Liveliness = "",
+    qos_lease: opt.Lease = None,
 ) -> None:
     """Publish messages on a topic, until Ctrl-C. `header: auto` and `stamp: now` become the time of sending."""
     from robolink.cli.topic.pub import Wish, run
@@ -174,6 +173,6 @@ def publish(
         type_, values = "", type_
     opt.refuse_together(ctx, {"--stdin": stdin, "VALUES": values is not None})
     opt.refuse_together(ctx, {"--once": once, "--times": times})
-    flags = qos.flags_of(ctx.params)
+    flags = opt.flags_of(ctx.params)
     wish = Wish(rate, 1 if once else times, wait, max_wait, keep_alive, print_every, node_name, flags, sim_time)
     run(topic, type_, None if stdin else values or "{}", wish)

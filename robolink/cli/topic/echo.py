@@ -10,8 +10,8 @@ from robolink.cli.shared.graph import matching_qos
 from robolink.cli.shared.messages import message_type
 from robolink.cli.shared.output import clear, say, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.topic.lenient import Leniently
-from robolink.cli.topic.qos_options import QoSFlags
+from robolink.cli.topic.arrivals import Leniently
+from robolink.cli.topic.options import QoSFlags
 from robolink.context import Context
 from robolink.event_handler import QoSMessageLostInfo, SubscriptionEventCallbacks
 from robolink.exceptions import RobolinkError
@@ -94,7 +94,7 @@ def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], boo
     kind = messages.check_path(msg_type, form.field) if form.field else None
     if not text:
         return lambda _: True
-    from robolink.cli.topic.filter import compile_filter
+    from robolink.cli.topic.arrivals import compile_filter
 
     passes = Leniently(compile_filter(text, kind or msg_type))
     if kind is None:

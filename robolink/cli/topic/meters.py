@@ -1,18 +1,19 @@
-"""Meters of topics for `robolink topic hz`, `bw` and `delay`: listen, and print figures once a second."""
+"""The verbs hz, bw and delay: rates, bandwidths and ages of the last messages, once a second."""
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+import threading
+from collections import deque
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli.shared.graph import PATIENCE, why_silent
-from robolink.cli.shared.layout import figures_of
+from robolink.cli.shared.layout import Figures, figures_of
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.topic import rates
-from robolink.cli.topic.arrivals import Arrivals, Take
-from robolink.cli.topic.lenient import Leniently
+from robolink.cli.topic.arrivals import Arrivals, Leniently, Take
 from robolink.exceptions import DecodeError, RobolinkError
 from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
@@ -20,6 +21,71 @@ from robolink.wire import EndpointToken
 
 if TYPE_CHECKING:
     from robolink.context import Context
+
+
+NS = 1e-9
+
+
+class Window:
+    """Sliding window of a topic's last `size` messages: the time of each arrival, in ns, and a number with it."""
+
+    def __init__(self, size: int) -> None:
+        self._times: deque[int] = deque(maxlen=size)
+        self._values: deque[int] = deque(maxlen=size)
+        self._lock = threading.Lock()
+        self._new = 0
+        self.total = 0
+        """Number of messages since the beginning."""
+
+    def add(self, at: int, value: int = 0) -> None:
+        """Add a message. A time before the last one means that time was reset: what was before is dropped."""
+        with self._lock:
+            if self._times and at < self._times[-1]:
+                self._times.clear()
+                self._values.clear()
+            self._times.append(at)
+            self._values.append(value)
+            self._new += 1
+            self.total += 1
+
+    def look(self) -> tuple[list[int], list[int], int]:
+        """Return the times, the numbers, and how many messages came since the last look."""
+        with self._lock:
+            new, self._new = self._new, 0
+            return list(self._times), list(self._values), new
+
+
+def gaps(times: Sequence[int]) -> Figures | None:
+    """Return the statistics of the gaps from each message to the next, in seconds."""
+    return figures_of([(later - earlier) * NS for earlier, later in pairwise(times)])
+
+
+def frequency(times: Sequence[int]) -> float | None:
+    """Return the rate in Hz; None for fewer than two messages, or if all came at once."""
+    spent = (times[-1] - times[0]) * NS if len(times) > 1 else 0.0
+    return (len(times) - 1) / spent if spent > 0 else None
+
+
+def bandwidth(times: Sequence[int], sizes: Sequence[int]) -> float | None:
+    """Return bytes a second, without the first message, which came at the beginning of the time measured."""
+    spent = (times[-1] - times[0]) * NS if len(times) > 1 else 0.0
+    return sum(sizes[1:]) / spent if spent > 0 else None
+
+
+def as_bytes(number: float, like: float) -> str:
+    """Return bytes as text in the unit that suits `like`, as in ros2: B, KB or MB, of a thousand each."""
+    if like < 1e3:
+        return f"{number:.0f} B"
+    return f"{number / 1e3:.2f} KB" if like < 1e6 else f"{number / 1e6:.2f} MB"
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return rows under a centred header and a rule, as in ros2, with an empty line at the end."""
+    widths = [max(len(each) for each in column) for column in zip(header, *rows, strict=True)]
+    head = "   ".join(title.center(width) for title, width in zip(header, widths, strict=True))
+    lines = ["   ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+    return "\n".join([head, "=" * (sum(widths) + 3 * (len(widths) - 1)), *lines, ""])
+
 
 PERIOD = 1.0
 """Interval between two reports, in seconds."""
@@ -54,7 +120,7 @@ class Report(NamedTuple):
 class Meter(NamedTuple):
     """A kind of measurement: how a message of a publisher's type is recorded, and the report of what is recorded."""
 
-    take: Callable[[EndpointToken, rates.Window], Take]
+    take: Callable[[EndpointToken, Window], Take]
     header: list[str]
     report: Callable[[list[int], list[int]], Report | None]
     nothing: dict[str, Any]
@@ -96,7 +162,7 @@ def _measure(
 ) -> None:
     node = node_of(context)
     names = list(dict.fromkeys(node.resolve_topic_name(each) for each in topics))
-    windows = {name: rates.Window(flags.window + more) for name in names}
+    windows = {name: Window(flags.window + more) for name in names}
     arrivals = Arrivals(node, clock)
     try:
         timed = _sim_time(context, arrivals) if flags.sim_time else _as_it_is
@@ -109,7 +175,7 @@ def _measure(
         arrivals.close()
 
 
-def _report(context: Context, arrivals: Arrivals, windows: dict[str, rates.Window], meter: Meter, flags: Flags) -> None:
+def _report(context: Context, arrivals: Arrivals, windows: dict[str, Window], meter: Meter, flags: Flags) -> None:
     begin, rounds = clocks.monotonic(), 0
     explained = False
     while True:
@@ -128,10 +194,10 @@ def _report(context: Context, arrivals: Arrivals, windows: dict[str, rates.Windo
                 tell(why_silent(context, name))
 
 
-def _say_reports(meter: Meter, windows: dict[str, rates.Window], reports: dict[str, Report | None]) -> None:
+def _say_reports(meter: Meter, windows: dict[str, Window], reports: dict[str, Report | None]) -> None:
     found = {name: each for name, each in reports.items() if each is not None}
     if len(windows) > 1 and found:
-        say(rates.table(meter.header, [[name, *each.cells] for name, each in found.items()]))
+        say(table(meter.header, [[name, *each.cells] for name, each in found.items()]))
     elif found:
         say(next(iter(found.values())).text)
     elif any(window.total for window in windows.values()):
@@ -141,16 +207,16 @@ def _say_reports(meter: Meter, windows: dict[str, rates.Window], reports: dict[s
 # How messages are noted
 
 
-def _noted(publisher: EndpointToken, window: rates.Window) -> Take:
+def _noted(publisher: EndpointToken, window: Window) -> Take:
     return lambda content, at: window.add(at)
 
 
-def _filtered(context: Context, text: str) -> Callable[[EndpointToken, rates.Window], Take]:
-    from robolink.cli.topic.filter import compile_filter
+def _filtered(context: Context, text: str) -> Callable[[EndpointToken, Window], Take]:
+    from robolink.cli.topic.arrivals import compile_filter
     from robolink.message import decoder
     from robolink.type_lookup import type_of
 
-    def how(publisher: EndpointToken, window: rates.Window) -> Take:
+    def how(publisher: EndpointToken, window: Window) -> Take:
         msg_type = type_of(context, publisher)
         passes, decode, read = Leniently(compile_filter(text, msg_type)), decoder(msg_type), context.transport.read
 
@@ -164,7 +230,7 @@ def _filtered(context: Context, text: str) -> Callable[[EndpointToken, rates.Win
     return how
 
 
-def _delayed(context: Context, publisher: EndpointToken, window: rates.Window) -> Take:
+def _delayed(context: Context, publisher: EndpointToken, window: Window) -> Take:
     from robolink.type_lookup import type_of
 
     stamp_of, read = stamp_reader(type_of(context, publisher)), context.transport.read
@@ -236,7 +302,7 @@ def _sim_time(context: Context, arrivals: Arrivals) -> Callable[[Take], Take]:
 
 
 def _rate(times: list[int], values: list[int]) -> Report | None:
-    figures, rate = rates.gaps(times), rates.rate(times)
+    figures, rate = gaps(times), frequency(times)
     if figures is None or rate is None:
         return None
     low, high, deviation, count = figures[1:]
@@ -248,11 +314,11 @@ def _rate(times: list[int], values: list[int]) -> Report | None:
 
 
 def _bandwidth(times: list[int], sizes: list[int]) -> Report | None:
-    found, figures = rates.bandwidth(times, sizes), figures_of(sizes)
+    found, figures = bandwidth(times, sizes), figures_of(sizes)
     if found is None or figures is None:
         return None
-    speed = rates.as_bytes(found, found) + "/s"
-    mean, low, high = (rates.as_bytes(each, found) for each in figures[:3])
+    speed = as_bytes(found, found) + "/s"
+    mean, low, high = (as_bytes(each, found) for each in figures[:3])
     data = {"bytes_per_second": found, "mean": figures.mean, "min": figures.low, "max": figures.high}
     return Report(
         f"{speed} from {figures.number} messages\n\tMessage size mean: {mean} min: {low} max: {high}",
@@ -262,7 +328,7 @@ def _bandwidth(times: list[int], sizes: list[int]) -> Report | None:
 
 
 def _delay(times: list[int], delays: list[int]) -> Report | None:
-    figures = figures_of([each * rates.NS for each in delays])
+    figures = figures_of([each * NS for each in delays])
     if figures is None:
         return None
     mean, low, high, deviation, count = figures

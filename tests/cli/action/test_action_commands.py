@@ -16,7 +16,7 @@ import pytest
 from robolink import Context, Node
 from robolink.action import ActionServer, CancelResponse
 from robolink.action.server import ServerGoalHandle
-from robolink.cli.action import goal, names
+from robolink.cli.action import action_names, type_of_action, verbs
 from robolink.cli.main import main
 from robolink.cli.shared import complete
 from robolink.interfaces.example_interfaces.action import Fibonacci
@@ -48,8 +48,8 @@ def served(node: Node, sums: Sums, monkeypatch: pytest.MonkeyPatch) -> Iterator[
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reasons are given at once."""
-    monkeypatch.setattr(goal, "PATIENCE", 0.01)
-    monkeypatch.setattr(goal, "_SLICE", 0.01)
+    monkeypatch.setattr(verbs, "PATIENCE", 0.01)
+    monkeypatch.setattr(verbs, "_SLICE", 0.01)
 
 
 # --- send_goal ----------------------------------------------------------------------------------------------------
@@ -99,7 +99,7 @@ def test_a_goal_that_does_not_succeed_is_exit_code_1(order: int, end: str, capsy
 
 @pytest.mark.usefixtures("served")
 def test_ctrl_c_cancels_the_goal(sums: Sums, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    when_said(monkeypatch, goal, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
+    when_said(monkeypatch, verbs, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
     before = signal.getsignal(signal.SIGTERM)
     assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 130
     assert capsys.readouterr().out.endswith(f"{ID}Canceling goal...\nGoal canceled.\n")
@@ -110,7 +110,7 @@ def test_ctrl_c_cancels_the_goal(sums: Sums, monkeypatch: pytest.MonkeyPatch, ca
 @pytest.mark.usefixtures("served")
 def test_ctrl_c_with_a_server_that_goes_on(sums: Sums, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     sums.cancel_response = CancelResponse.REJECT
-    when_said(monkeypatch, goal, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
+    when_said(monkeypatch, verbs, "say", lambda text: press_ctrl_c(text) if text.startswith("Goal acc") else None)
     assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 130
     assert capsys.readouterr().err == "robolink: the goal is not cancelled: the server goes on\n"
 
@@ -121,9 +121,9 @@ def test_a_reader_that_goes_away_cancels_the_goal_too(sums: Sums, monkeypatch: p
         if not text.startswith(("Waiting", "Sending")):
             raise BrokenPipeError
 
-    when_said(monkeypatch, goal, "say", vanish)
+    when_said(monkeypatch, verbs, "say", vanish)
     with pytest.raises(BrokenPipeError):
-        goal.run("/lab/sums", "", "order: -1", goal.Manner())
+        verbs.run("/lab/sums", "", "order: -1", verbs.Manner())
     assert sums.canceled.wait(PATIENCE)
 
 
@@ -133,7 +133,7 @@ def test_so_does_one_of_the_feedback(sums: Sums, monkeypatch: pytest.MonkeyPatch
         if text.startswith("Feedback"):
             raise BrokenPipeError
 
-    when_said(monkeypatch, goal, "say", vanish)
+    when_said(monkeypatch, verbs, "say", vanish)
     assert main(["action", "send_goal", "/lab/sums", "order: -1", "--feedback"]) == 141
     assert sums.canceled.wait(PATIENCE)
     assert capsys.readouterr().err == "", "it is no fault of a callback"
@@ -230,7 +230,7 @@ def test_a_server_on_another_domain_is_told(node: Node, capsys: Captured) -> Non
 
 
 def test_a_server_that_never_answers(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    monkeypatch.setattr(goal, "CANCELED_WITHIN", 0.05)
+    monkeypatch.setattr(verbs, "CANCELED_WITHIN", 0.05)
     ActionServer(node, Fibonacci, "/sums", print)  # and nobody spins
     assert main(["action", "send_goal", "/sums", "order: 3", "--timeout", "0.1"]) == 1
     out, err = capsys.readouterr()
@@ -247,7 +247,7 @@ def test_a_server_that_goes_away(node: Node, monkeypatch: pytest.MonkeyPatch, ca
         if text.startswith("Goal accepted"):
             next(node.waitables).destroy()
 
-    when_said(monkeypatch, goal, "say", leave)
+    when_said(monkeypatch, verbs, "say", leave)
     assert main(["action", "send_goal", "/lab/sums", "order: -1"]) == 1
     assert "robolink: action /lab/sums, goal " + "07" * 16 + ": no result: " in capsys.readouterr().err
 
@@ -257,12 +257,12 @@ def test_a_server_that_goes_away(node: Node, monkeypatch: pytest.MonkeyPatch, ca
 
 def test_names_and_types_are_completed(busy: Node, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(complete, "WITHIN", PATIENCE)
-    assert names.action_names("") == ["/lab/sums", "/polish"]
-    assert names.action_names("pol") == ["polish"]
+    assert action_names("") == ["/lab/sums", "/polish"]
+    assert action_names("pol") == ["polish"]
     asked: Any = SimpleNamespace(params={"action": "polish"})
-    assert names.type_of_action(asked, "") == [POLISH]
+    assert type_of_action(asked, "") == [POLISH]
     asked.params["action"] = "/nobody"
-    assert names.type_of_action(asked, "example_interfaces/action/F") == [TYPE]
+    assert type_of_action(asked, "example_interfaces/action/F") == [TYPE]
     assert complete.action_types("Fibo") == ["Fibonacci"]
 
 

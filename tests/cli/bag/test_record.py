@@ -17,7 +17,7 @@ from robolink.bag.reader import open_bag
 from robolink.bag.recording import Figures
 from robolink.bag.writer import BagWriter
 from robolink.cli.bag import recorder
-from robolink.cli.bag.recording_lines import clock, progress, summary
+from robolink.cli.bag.recorder import clock, progress, summary
 from robolink.cli.main import main
 from robolink.interfaces.rosbag2_interfaces.msg import WriteSplitEvent
 from robolink.interfaces.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile, Stop

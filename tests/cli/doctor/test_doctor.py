@@ -17,9 +17,8 @@ from hypothesis import strategies as st
 from robolink import Node
 from robolink.cli import doctor
 from robolink.cli.doctor import gathering, graph_checks, look
-from robolink.cli.doctor.facts import Facts, Seen
+from robolink.cli.doctor.facts import MOST_SHOWN, Facts, Seen
 from robolink.cli.doctor.report import sections
-from robolink.cli.doctor.verdict import MOST_SHOWN
 from robolink.cli.main import main
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.rosgraph_msgs.msg import Clock

@@ -7,10 +7,9 @@ from typing import Any
 import pytest
 
 from robolink.cli.doctor import checks, graph_checks
-from robolink.cli.doctor.facts import ClockOffset, Facts, Seen, Settings
+from robolink.cli.doctor.facts import ERROR, LONGEST, OK, UNKNOWN, WARNING, ClockOffset, Facts, Seen, Settings, Verdict
 from robolink.cli.doctor.gathering import read_settings
 from robolink.cli.doctor.ports import Holder
-from robolink.cli.doctor.verdict import ERROR, LONGEST, OK, UNKNOWN, WARNING, Verdict
 from robolink.networks import port_probe
 from robolink.networks.port_probe import Port
 from robolink.transport import shared_memory

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.cli.doctor import graph_checks, look
-from robolink.cli.doctor.facts import Facts, Seen
-from robolink.cli.doctor.verdict import OK, WARNING, Verdict, listed
+from robolink.cli.doctor.facts import OK, WARNING, Facts, Seen, Verdict, listed
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.wire import (
     NO_HASH,

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from robolink.cli.doctor import limit as command
-from robolink.cli.doctor.limit import InForce
+from robolink.cli.doctor import network as command
+from robolink.cli.doctor.network import InForce
 from robolink.cli.main import main
 from robolink.launch.reading.arguments import limits_of
 from robolink.networks.limits import Limits
@@ -17,7 +17,7 @@ SOME = Limits(control=["/cmd_vel"], rate={"/camera/image": 0.5}, size={"/map": 8
 
 
 def test_what_is_in_force() -> None:
-    assert command.lines(InForce("ROBOLINK_LIMITS", SOME), ["wlan0"]) == [
+    assert command.limit_lines(InForce("ROBOLINK_LIMITS", SOME), ["wlan0"]) == [
         "limits    ROBOLINK_LIMITS",
         "at        wlan0",
         "first     /cmd_vel, /clock",
@@ -25,12 +25,12 @@ def test_what_is_in_force() -> None:
         "size      /map: 8,000 bytes",
         "buffer    8,192 bytes",
     ]
-    assert command.lines(InForce("a", Limits()), None) == [
+    assert command.limit_lines(InForce("a", Limits()), None) == [
         "limits    a",
         "at        all interfaces",
         "first     /clock",
     ]
-    (line,) = command.lines(InForce("", None), None)
+    (line,) = command.limit_lines(InForce("", None), None)
     assert line.startswith("limits    none; docs/reference/networks.md")
 
 

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from robolink import Node, Parameter
 from robolink.arguments.parameter_file import parse_parameter_file
 from robolink.cli.main import main
-from robolink.cli.param import ask, each_with_its_flag
-from robolink.cli.param.names import of_node
-from robolink.cli.param.values import as_file, fitting, nested, read
+from robolink.cli.param import each_with_its_flag, verbs
+from robolink.cli.param.values import as_file, fitting, nested, of_node, read
 from robolink.cli.shared import complete
 from robolink.interfaces.rcl_interfaces.msg import (
     ParameterDescriptor,
@@ -197,7 +196,7 @@ def test_wrong_usage_is_one_line_and_2(words: list[str], capsys: Captured) -> No
 
 def test_the_node_is_waited_for(robot: Node, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
     looked, done = threading.Event(), threading.Event()
-    served = ask.serves
+    served = verbs.serves
 
     def serves(*args: Any) -> bool:
         looked.set()
@@ -208,7 +207,7 @@ def test_the_node_is_waited_for(robot: Node, capsys: Captured, monkeypatch: pyte
         with spinning(Node("late", context=robot.context)):
             done.wait()
 
-    monkeypatch.setattr(ask, "serves", serves)
+    monkeypatch.setattr(verbs, "serves", serves)
     thread = threading.Thread(target=come)
     thread.start()
     try:
@@ -231,7 +230,7 @@ class Typed:
 
 @pytest.mark.usefixtures("driver")
 def test_names_are_completed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.cli.param.names.WITHIN", 5.0)
+    monkeypatch.setattr("robolink.cli.param.values.WITHIN", 5.0)
     assert of_node(Typed("/lab/driver"), "s") == ["speed", "start_type_description_service"]
     assert of_node(Typed("lab/driver"), "arm.") == ["arm.ids", "arm.length"]
     assert of_node(Typed("/nobody"), "") == []

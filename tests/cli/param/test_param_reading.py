@@ -8,7 +8,7 @@ import pytest
 
 from robolink import Node
 from robolink.cli.main import main
-from robolink.cli.param import ask
+from robolink.cli.param import verbs
 from tests.support.dumped import DUMPED
 from tests.support.seen_by_commands import spinning
 
@@ -63,7 +63,7 @@ def test_a_node_that_does_not_answer_is_told_of_and_the_others_are_listed(
     driver: Node, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Node("silent", context=driver.context)  # nobody spins it
-    monkeypatch.setattr(ask, "ANSWER_WITHIN", 0.2)
+    monkeypatch.setattr(verbs, "ANSWER_WITHIN", 0.2)
     assert main(["param", "list", "--filter", "speed"]) == 0
     said, told = capsys.readouterr()
     assert said == "/lab/driver:\n  speed\n"

@@ -19,7 +19,7 @@ from robolink.bag.definition import message_definition
 from robolink.bag.topic import BagTopic
 from robolink.bag.writer import BagWriter
 from robolink.cli.main import main
-from robolink.cli.plot import record, trajectories, values
+from robolink.cli.plot import drawing, messages
 from robolink.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from robolink.interfaces.geometry_msgs.msg import Point, PointStamped, PoseStamped, TransformStamped, Twist, Vector3
 from robolink.interfaces.nav_msgs.msg import Odometry
@@ -47,14 +47,14 @@ def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
 def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The axes of the pictures that were drawn."""
     pictures: list[Any] = []
-    show = record.show
+    show = messages.show
 
-    def note(figure: Any, wish: record.Wish) -> None:
+    def note(figure: Any, wish: messages.Wish) -> None:
         pictures.append(figure.axes[0])
         show(figure, wish)
 
-    monkeypatch.setattr(trajectories, "show", note)
-    monkeypatch.setattr(values, "show", note)
+    monkeypatch.setattr(drawing, "show", note)
+    monkeypatch.setattr(drawing, "show", note)
     return pictures
 
 
@@ -91,25 +91,25 @@ def plot(*arguments: str | Path) -> int:
     ids=lambda message: type(message).__name__,
 )
 def test_a_place_is_found_in_every_message_that_has_one(message: Any) -> None:
-    assert trajectories.positions(message) == [(1.0, 2.0)]
+    assert drawing.positions(message) == [(1.0, 2.0)]
 
 
 def test_a_transform_is_a_place_and_other_messages_are_none() -> None:
     transform = TransformStamped()
     transform.transform.translation = Vector3(x=1.0, y=2.0)
-    assert trajectories.positions(transform) == [(1.0, 2.0)]
-    assert trajectories.positions(String()) == trajectories.positions(LaserScan()) == []
-    assert trajectories.path_points(String()) == []
+    assert drawing.positions(transform) == [(1.0, 2.0)]
+    assert drawing.positions(String()) == drawing.positions(LaserScan()) == []
+    assert drawing.path_points(String()) == []
 
 
 @given(st.floats(), st.floats())
 def test_a_place_that_is_nowhere_is_none(x: float, y: float) -> None:
-    found = trajectories.positions(Point(x=x, y=y))
+    found = drawing.positions(Point(x=x, y=y))
     assert found == ([(x, y)] if math.isfinite(x) and math.isfinite(y) else [])
 
 
 def test_a_way_goes_on_and_a_path_is_replaced() -> None:
-    way, path = trajectories.Way("/odom", trajectories.POSES), trajectories.Way("/plan", trajectories.PATHS)
+    way, path = drawing.Way("/odom", drawing.POSES), drawing.Way("/plan", drawing.PATHS)
     for x in (0.0, 1.0, 1.0, 2.0):
         way.take(odometry(x, 0.0))
         path.take(PathMessage(poses=[pose(x, 0.0), pose(x, 1.0)]))
@@ -225,7 +225,7 @@ def test_a_byte_is_a_value_and_messages_that_lack_the_element_are_left_out(
 @pytest.mark.parametrize("backend", ["tkagg", "module://of_a_notebook"])
 def test_a_file_needs_no_screen_whatever_the_shell_says(tmp_path: Path, backend: str) -> None:
     program = """
-import sys; from pathlib import Path; from robolink.cli.plot.record import Wish, check
+import sys; from pathlib import Path; from robolink.cli.plot.messages import Wish, check
 check(Wish(Path(sys.argv[1])))
 import matplotlib.pyplot as plt; plt.subplots()
 """
@@ -270,7 +270,7 @@ def test_what_cannot_be_drawn_is_said_in_a_line(node: Node, tmp_path: Path, caps
 def test_a_topic_that_nobody_publishes_is_waited_for_and_given_up(
     node: Node, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(record, "LEAST_WAIT", 0.1)
+    monkeypatch.setattr(messages, "LEAST_WAIT", 0.1)
     node.create_publisher(Odometry, "odom", 10)
     with spinning(node):
         assert plot("odom", "/odom", "--out", tmp_path / "x.png") == 1
@@ -288,7 +288,7 @@ def test_a_picture_that_could_not_be_written_is_refused_before_listening(
     assert plot("odom", "/odom", "--out", tmp_path / "no" / "way.png") == 1
     assert "no folder" in capsys.readouterr().err
     assert plot("odom", "/odom") == 1
-    assert capsys.readouterr().err == f"robolink: {record.WINDOW_NEEDED}\n"
+    assert capsys.readouterr().err == f"robolink: {messages.WINDOW_NEEDED}\n"
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for out in ([], ["--out", str(tmp_path / "way.png")]):
         assert plot("odom", "/odom", *out) == 1
@@ -299,14 +299,14 @@ def test_ctrl_c_draws_what_was_heard(
     node: Node, tmp_path: Path, drawn: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     latch(node, "odom", odometry(0.0, 0.0), odometry(3.0, 4.0))
-    take = trajectories.Way.take
+    take = drawing.Way.take
 
-    def press(way: trajectories.Way, message: Any) -> None:
+    def press(way: drawing.Way, message: Any) -> None:
         take(way, message)
         if len(way.points) == 2:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(trajectories.Way, "take", press)
+    monkeypatch.setattr(drawing.Way, "take", press)
     with spinning(node):
         assert main(["plot", "odom", "/lab/odom", "--out", str(tmp_path / "way.png")]) == 0
     assert len(drawn[0].lines[0].get_xydata()) == 2
@@ -316,7 +316,7 @@ def test_other_nodes_called_world_do_no_harm(node: Node, tmp_path: Path, drawn: 
     world = made(node.context, "world")  # it has no parameters to ask for
     latch(node, "odom", odometry(3.0, 1.0), odometry(4.0, 1.0))
     with pytest.MonkeyPatch.context() as patch, spinning(node, world):
-        patch.setattr(trajectories, "ANSWER_WITHIN", 0.05)
+        patch.setattr(drawing, "ANSWER_WITHIN", 0.05)
         assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png") == 0
     assert len(drawn) == 1
 

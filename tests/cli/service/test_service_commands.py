@@ -13,7 +13,7 @@ import pytest
 
 from robolink import Context, Node
 from robolink.cli.main import main
-from robolink.cli.service import call
+from robolink.cli.service import verbs
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
 from robolink.message import encode, type_hash
@@ -52,13 +52,13 @@ def when_told(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, Hook], None]:
     """Do something whenever the call has said ("say") or told ("tell") something."""
 
     def install(function: str, action: Hook) -> None:
-        original = getattr(call, function)
+        original = getattr(verbs, function)
 
         def speak(text: str) -> None:
             original(text)
             action(text)
 
-        monkeypatch.setattr(call, function, speak)
+        monkeypatch.setattr(verbs, function, speak)
 
     return install
 
@@ -66,8 +66,8 @@ def when_told(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, Hook], None]:
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reasons are given at once."""
-    monkeypatch.setattr(call, "PATIENCE", 0.01)
-    monkeypatch.setattr(call, "_SLICE", 0.01)
+    monkeypatch.setattr(verbs, "PATIENCE", 0.01)
+    monkeypatch.setattr(verbs, "_SLICE", 0.01)
 
 
 def press_ctrl_c(text: str) -> None:
@@ -204,7 +204,7 @@ def test_a_type_of_the_workspace_is_known(tmp_path: Path, domain: int, monkeypat
 
 
 def test_reasons_are_given_after_a_second_and_the_end_comes_after_five() -> None:
-    assert (call.PATIENCE, call.Manner().timeout) == (1.0, 5.0)
+    assert (verbs.PATIENCE, verbs.Manner().timeout) == (1.0, 5.0)
 
 
 @pytest.mark.parametrize(

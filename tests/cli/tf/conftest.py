@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from robolink import Node
-from robolink.cli.tf import echo
+from robolink.cli.tf import watch
 from robolink.tf2 import TransformBroadcaster
 from robolink.time import Time
 from tests.support.seen_by_commands import a_node_that_commands_see
@@ -18,7 +18,7 @@ from tests.support.seen_by_commands import a_node_that_commands_see
 
 @pytest.fixture
 def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
-    monkeypatch.setattr(echo, "PATIENCE", 0.05)
+    monkeypatch.setattr(watch, "PATIENCE", 0.05)
     with a_node_that_commands_see(monkeypatch) as robot:
         yield robot
 

@@ -15,7 +15,7 @@ from hypothesis import given
 from robolink import Node
 from robolink.cli.main import main
 from robolink.cli.shared import output
-from robolink.cli.tf import echo, monitor
+from robolink.cli.tf import watch
 from robolink.geometry.transformations import euler_from_quaternion, quaternion_from_euler, quaternion_matrix
 from robolink.tf2 import StaticTransformBroadcaster
 from tests.support.commands import Command
@@ -66,7 +66,7 @@ def test_echo_as_json_goes_on_at_a_rate(
         if next(count) == 2:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(echo, "say_json", speak)
+    monkeypatch.setattr(watch, "say_json", speak)
     assert main(["tf", "echo", "base", "map", "100", "--json"]) == 130
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert len(lines) == 3
@@ -84,8 +84,8 @@ def test_echo_as_json_goes_on_at_a_rate(
 @given(TURN)
 def test_angles_and_matrix_are_those_of_transformations(turn: tuple[float, float, float, float]) -> None:
     found = quaternion_matrix(turn)
-    assert np.allclose(echo.matrix((0, 0, 0, *turn)), found)
-    roll, pitch, yaw = echo.roll_pitch_yaw(*turn)
+    assert np.allclose(watch.matrix((0, 0, 0, *turn)), found)
+    roll, pitch, yaw = watch.roll_pitch_yaw(*turn)
     wanted = euler_from_quaternion(turn)
     if abs(abs(pitch) - math.pi / 2) > 1e-3:
         assert all(abs(math.remainder(a - b, math.tau)) < 1e-6 for a, b in zip((roll, pitch, yaw), wanted, strict=True))
@@ -94,7 +94,7 @@ def test_angles_and_matrix_are_those_of_transformations(turn: tuple[float, float
 @pytest.mark.parametrize("up", [1.0, -1.0])
 def test_angles_straight_up_and_down(up: float) -> None:
     turn = quaternion_from_euler(0.4, up * math.pi / 2, 0.0)
-    assert echo.roll_pitch_yaw(*turn) == pytest.approx((0.4, up * math.pi / 2, 0.0), abs=1e-6)
+    assert watch.roll_pitch_yaw(*turn) == pytest.approx((0.4, up * math.pi / 2, 0.0), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_echo_goes_on_when_the_tree_falls_apart(node: Node, monkeypatch: pytest.
             raise KeyboardInterrupt
         broadcaster.sendTransform(transform("moon", "odom"))
 
-    when_said(monkeypatch, echo, "say", after)
+    when_said(monkeypatch, watch, "say", after)
     assert main(["tf", "echo", "map", "base", "100"]) == 130
     out = capsys.readouterr().out
     assert re.search(r"Failure at \d+\.\d{6}\nException thrown:Could not find a connection between 'map' and", out)
@@ -146,7 +146,7 @@ def test_a_rate_is_above_zero(rate: str, capsys: Captured) -> None:
 
 
 def test_echo_ends_on_ctrl_c_while_it_waits(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    when_said(monkeypatch, echo, "tell", press_ctrl_c)
+    when_said(monkeypatch, watch, "tell", press_ctrl_c)
     assert main(["tf", "echo", "a", "b"]) == 130
     assert capsys.readouterr().out == ""
 
@@ -159,9 +159,7 @@ def test_monitor_says_who_publishes_how_often_and_how_late(
 ) -> None:
     again(transform("odom", "base"), age=3.0)
     static(made(node.context, "fixed"), transform("base", "lidar"))
-    when_said(
-        monkeypatch, monitor, "say", lambda text: press_ctrl_c(text) if "static" in text and "Hz" in text else None
-    )
+    when_said(monkeypatch, watch, "say", lambda text: press_ctrl_c(text) if "static" in text and "Hz" in text else None)
     assert main(["tf", "monitor", "--period", "0.2"]) == 130
     out, err = capsys.readouterr()
     assert err == ""
@@ -179,7 +177,7 @@ def test_monitor_of_a_chain(
 ) -> None:
     again(transform("odom", "base"), transform("odom", "other"))
     static(node, transform("base", "lidar"))
-    when_said(monkeypatch, monitor, "say", lambda text: press_ctrl_c(text) if "Chain" in text else None)
+    when_said(monkeypatch, watch, "say", lambda text: press_ctrl_c(text) if "Chain" in text else None)
     assert main(["tf", "monitor", "odom", "lidar", "--period", "0.1"]) == 130
     out = capsys.readouterr().out
     assert "RESULTS: for odom to lidar\nChain is: odom -> base -> lidar\nNet delay     now = " in out
@@ -195,7 +193,7 @@ def test_monitor_as_json(again: Callable[..., None], monkeypatch: pytest.MonkeyP
         if value["frames"][0]["rate"]:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(monitor, "say_json", speak)
+    monkeypatch.setattr(watch, "say_json", speak)
     assert main(["tf", "monitor", "base", "odom", "--period", "0.3", "--json"]) == 130
     found = json.loads(capsys.readouterr().out.splitlines()[-1])
     assert found["chain"] == ["base", "odom"]
@@ -210,7 +208,7 @@ def test_monitor_as_json(again: Callable[..., None], monkeypatch: pytest.MonkeyP
 
 
 def test_monitor_tells_once_why_there_is_nothing(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    when_said(monkeypatch, monitor, "tell", press_ctrl_c)
+    when_said(monkeypatch, watch, "tell", press_ctrl_c)
     assert main(["tf", "monitor", "--period", "0.1"]) == 130
     assert "nobody publishes it on domain 7 yet" in capsys.readouterr().err
     static(node, transform("a", "b"))

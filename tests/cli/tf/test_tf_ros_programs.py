@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink import Node
-from robolink.cli.tf import echo, monitor, ros_programs
+from robolink.cli.tf import ros_programs, watch
 from robolink.exceptions import RobolinkError
 from robolink.tf2 import StaticTransformBroadcaster
 from tests.support.seen_by_commands import press_ctrl_c, when_said
@@ -32,7 +32,7 @@ def test_tf2_echo_takes_two_frames_and_a_rate(
     words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
     words += ["map", "base", "20", "--ros-args", "-p", "use_sim_time:=true"]
-    when_said(monkeypatch, echo, "say", press_ctrl_c)
+    when_said(monkeypatch, watch, "say", press_ctrl_c)
     with pytest.raises(KeyboardInterrupt):
         ros_programs.tf2_echo()
     assert "- Translation: [1.000, 2.000, 0.000]" in capsys.readouterr().out
@@ -40,7 +40,7 @@ def test_tf2_echo_takes_two_frames_and_a_rate(
 
 def test_tf2_monitor_shows_a_chain(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     words += ["map", "base"]
-    when_said(monkeypatch, monitor, "say", press_ctrl_c)
+    when_said(monkeypatch, watch, "say", press_ctrl_c)
     with pytest.raises(KeyboardInterrupt):
         ros_programs.tf2_monitor()
     assert capsys.readouterr().out == "Gathering data on map -> base for 10 seconds...\n"
@@ -51,7 +51,7 @@ def test_a_reader_that_has_enough_ends_them_quietly(words: list[str], monkeypatc
         raise BrokenPipeError
 
     words += ["map", "base"]
-    for module, program in ((echo, ros_programs.tf2_echo), (monitor, ros_programs.tf2_monitor)):
+    for module, program in ((watch, ros_programs.tf2_echo), (watch, ros_programs.tf2_monitor)):
         when_said(monkeypatch, module, "say", break_pipe)
         program()
 

@@ -9,8 +9,7 @@ import pytest
 
 from robolink import Node
 from robolink.cli.shared.session import node_of, opened
-from robolink.cli.top.measuring import Meter
-from robolink.cli.top.processes import sessions_here
+from robolink.cli.top.measuring import Meter, sessions_here
 from robolink.cli.top.table import Shown
 from robolink.interfaces.std_msgs.msg import String
 from robolink.transport.reach import Link

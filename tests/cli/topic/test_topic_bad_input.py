@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robolink import Node, RobolinkError
 from robolink.cli.main import main
-from robolink.cli.topic.stamps import Stamped
+from robolink.cli.topic.pub import Stamped
 from robolink.documents.yamlfile import parse
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from robolink.cli.topic.filter import FilterError, compile_filter
+from robolink.cli.topic.arrivals import FilterError, compile_filter
 from robolink.interfaces.geometry_msgs.msg import PoseWithCovariance, Twist, Vector3
 from robolink.interfaces.sensor_msgs.msg import Image, LaserScan
 from robolink.interfaces.std_msgs.msg import Bool, Byte, Header, Int32, String

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from robolink import Node
 from robolink.cli.main import main
 from robolink.cli.topic import pub
-from robolink.cli.topic.qos_options import (
+from robolink.cli.topic.options import (
     DURABILITIES,
     HISTORIES,
     LIVELINESSES,
@@ -22,7 +22,7 @@ from robolink.cli.topic.qos_options import (
     RELIABILITIES,
     QoSFlags,
 )
-from robolink.cli.topic.stamps import Stamped
+from robolink.cli.topic.pub import Stamped
 from robolink.exceptions import DocumentError, EncodeError, RobolinkError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from robolink import Node
 from robolink.cli.shared.layout import figures_of
-from robolink.cli.topic import meters, rates
+from robolink.cli.topic import meters
 from robolink.cli.topic.arrivals import Arrivals
 from robolink.exceptions import DecodeError, RobolinkError
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
@@ -46,20 +46,20 @@ def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
 
 def test_the_rate_and_the_gaps_are_those_of_the_times() -> None:
     times = [0, 100 * MS, 200 * MS, 400 * MS]
-    assert rates.rate(times) == pytest.approx(7.5)
-    mean, low, high, deviation, number = rates.gaps(times) or (0, 0, 0, 0, 0)
+    assert meters.frequency(times) == pytest.approx(7.5)
+    mean, low, high, deviation, number = meters.gaps(times) or (0, 0, 0, 0, 0)
     assert (mean, low, high) == pytest.approx((0.4 / 3, 0.1, 0.2))
     assert deviation == pytest.approx(math.sqrt(2) / 30)
     assert number == 3
 
 
 def test_the_bandwidth_counts_what_came_after_the_first() -> None:
-    assert rates.bandwidth([0, 500 * MS, 1000 * MS], [7_000_000, 1000, 2000]) == 3000.0
+    assert meters.bandwidth([0, 500 * MS, 1000 * MS], [7_000_000, 1000, 2000]) == 3000.0
 
 
 @pytest.mark.parametrize("times", [[], [5], [5, 5]])
 def test_too_few_messages_have_no_rate(times: list[int]) -> None:
-    assert (rates.rate(times), rates.bandwidth(times, times)) == (None, None)
+    assert (meters.frequency(times), meters.bandwidth(times, times)) == (None, None)
     assert figures_of([]) is None
 
 
@@ -68,17 +68,17 @@ def test_too_few_messages_have_no_rate(times: list[int]) -> None:
     [(999, 999, "999 B"), (1000, 1000, "1.00 KB"), (50, 1234, "0.05 KB"), (6_220_800, 186e6, "6.22 MB")],
 )
 def test_bytes_are_spelled_as_in_ros2(number: float, like: float, shown: str) -> None:
-    assert rates.as_bytes(number, like) == shown
+    assert meters.as_bytes(number, like) == shown
 
 
 def test_a_table_is_laid_out_as_in_ros2() -> None:
-    assert rates.table(["topic", "rate"], [["/a", "1.000"], ["/image", "30.000"]]) == (
+    assert meters.table(["topic", "rate"], [["/a", "1.000"], ["/image", "30.000"]]) == (
         "topic     rate \n===============\n/a       1.000 \n/image   30.000\n"
     )
 
 
 def test_a_window_keeps_the_last_and_forgets_what_was_before_time_began_anew() -> None:
-    window = rates.Window(3)
+    window = meters.Window(3)
     for at in (1, 2, 3, 4):
         window.add(at, at * 10)
     assert window.look() == ([2, 3, 4], [20, 30, 40], 4)
@@ -90,14 +90,14 @@ def test_a_window_keeps_the_last_and_forgets_what_was_before_time_began_anew() -
 
 @given(st.lists(st.integers(0, 2**62), max_size=50), st.integers(2, 10))
 def test_any_times_have_figures_or_none(times: list[int], size: int) -> None:
-    window = rates.Window(size)
+    window = meters.Window(size)
     for at in times:
         window.add(at, at)
     kept, values, new = window.look()
     assert kept == sorted(kept)
     assert len(kept) == len(values) <= size
     assert new == len(times)
-    for figure in (rates.rate(kept), rates.bandwidth(kept, values)):
+    for figure in (meters.frequency(kept), meters.bandwidth(kept, values)):
         assert figure is None or figure >= 0
     meters._rate(kept, values), meters._bandwidth(kept, values), meters._delay(kept, values)
 
@@ -133,7 +133,7 @@ def test_a_moment_is_that_of_the_arrival_however_late_it_is_taken(node: Node) ->
 
 
 def test_nothing_is_dropped_in_a_flood(node: Node) -> None:
-    window = rates.Window(100_000)
+    window = meters.Window(100_000)
     publisher = node.create_publisher(Int32, "/x", 10)
     arrivals = Arrivals(node)
     arrivals.listen("/x", lambda _: lambda content, at: window.add(at))

@@ -1,4 +1,4 @@
-"""Calls of a service for `robolink service call`, once or at a rate."""
+"""The verbs of services: the nodes of a service, calls, and events of introspection."""
 
 from __future__ import annotations
 
@@ -6,20 +6,96 @@ import contextlib
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.cli.shared import messages
-from robolink.cli.shared.graph import domains_with, hint
-from robolink.cli.shared.messages import GivenRequest, message_of
-from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.session import node_of, opened
+from robolink.cli.shared.graph import absolute, announced, domains_with, hint
+from robolink.cli.shared.messages import GivenRequest, message_of, service_type
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import looking, node_of, opened
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces import find, is_named
+from robolink.interfaces.service_msgs.msg import ServiceEventInfo
+from robolink.qos import qos_profile_services_default
+from robolink.service_introspection import SUFFIX
 from robolink.system import clocks
 from robolink.system.terminal import shown
-from robolink.wire import EndpointKind
+from robolink.task import Future
+from robolink.topic_endpoint_info import qos_lines
+from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
     from robolink.client import Client
     from robolink.context import Context
     from robolink.executors import Executor
+    from robolink.graph.graph import Token
+
+
+TITLES = {EndpointKind.CLIENT: "Clients count", EndpointKind.SERVICE: "Services count"}
+ROLES = {EndpointKind.CLIENT: "CLIENT", EndpointKind.SERVICE: "SERVER"}
+
+
+class End(NamedTuple):
+    """A server or client, and its gid."""
+
+    token: EndpointToken
+    gid: str
+
+
+def show(service: str, *, verbose: bool, as_json: bool) -> None:
+    """Show the service. Raises NotFoundError for one that has neither servers nor clients."""
+    with looking() as context:
+        tokens = announced(context)
+    ends = _ends(tokens, absolute(service), f"domain {context.get_domain_id()}")
+    types = sorted({each.token.type_name for each in ends})
+    if as_json:
+        say_json({"name": absolute(service), "types": types, **_as_json(ends)})
+        return
+    more = "\n" if verbose else ""
+    say(f"Type: {types[0] if len(types) == 1 else types}{more}")
+    for kind, title in TITLES.items():
+        of_kind = [each for each in ends if each.token.kind is kind]
+        say(f"{title}: {len(of_kind)}{more}")
+        for each in of_kind if verbose else ():
+            say(f"{described(each)}\n")
+
+
+def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
+    found = [
+        End(each, ".".join(f"{byte:02x}" for byte in gid_of(text)))
+        for text, each in tokens.items()
+        if isinstance(each, EndpointToken) and each.kind in TITLES
+    ]
+    ends = [each for each in found if each.token.name == name]
+    if not ends:
+        raise NotFoundError("service", shown(name), {each.token.name for each in found}, where)
+    return sorted(ends, key=lambda each: (each.token.full_node_name, each.gid))
+
+
+def described(end: End) -> str:
+    """Return the lines that ros2 prints for an endpoint."""
+    token = end.token
+    return "\n".join(
+        [
+            f"Node name: {token.node_name}",
+            f"Node namespace: {token.namespace}",
+            f"Service type: {token.type_name}",
+            f"Service type hash: {token.type_hash}",
+            f"Endpoint type: {ROLES[token.kind]}",
+            f"GID: {end.gid}",
+            *qos_lines(token.qos),
+        ]
+    )
+
+
+def _as_json(ends: list[End]) -> dict[str, list[dict[str, str]]]:
+    return {
+        f"{role.lower()}s": [
+            {"node": token.full_node_name, "type": token.type_name, "hash": token.type_hash, "gid": gid}
+            for token, gid in ends
+            if token.kind is kind
+        ]
+        for kind, role in ROLES.items()
+    }
+
 
 PATIENCE = 1.0
 """Wait for an answer until the reason is printed, in seconds."""
@@ -51,7 +127,7 @@ class Manner(NamedTuple):
         return ""
 
 
-def run(service: str, type_: str, values: str, manner: Manner) -> None:
+def call(service: str, type_: str, values: str, manner: Manner) -> None:
     """Call a service once, or at a rate until Ctrl-C.
 
     Raises CallError if there is no answer in time, ServiceError if the server goes away or its answer cannot be
@@ -161,3 +237,57 @@ def _server_of(executor: Executor, client: Client) -> str:
     if not found:
         return f"{client.service_name}, which nobody serves any more"
     return f"{client.service_name} of {found[0].full_node_name}"
+
+
+NAMES = {number: name for name, (_, number) in ServiceEventInfo.__ros_constants__.items()}
+"""Names of the kinds of events, by number."""
+
+
+class Format(NamedTuple):
+    """Format in which events are shown."""
+
+    style: messages.Style = messages.Style()
+    csv: bool = False
+    json: bool = False
+
+    def text(self, event: Any) -> str:
+        """Return an event as text, like ros2: with a name in place of its number but for CSV."""
+        if self.csv:
+            return messages.as_csv(event, self.style)
+        event.info.event_type = NAMES.get(event.info.event_type, event.info.event_type)
+        return messages.as_json(event) if self.json else f"{messages.as_yaml(event, self.style)}\n---"
+
+
+def echo(service: str, type_: str, form: Format, *, once: bool = False) -> None:
+    """Show what a service and its clients say to each other, until Ctrl-C; one event if `once`.
+
+    Raises NotFoundError for an unknown service or type.
+    """
+    done: Future[None] = Future()
+
+    def on_event(event: Any) -> None:
+        if done.done():
+            return
+        try:
+            say(form.text(event))
+        except (RobolinkError, OSError) as error:  # a closed pipe
+            done.set_exception(error)
+            return
+        if once:
+            done.set_result(None)
+
+    with opened() as context:
+        node = node_of(context)
+        name = node.resolve_service_name(service)
+        events = service_type(context, name, type_).Event
+        subscription = node.create_subscription(events, name + SUFFIX, on_event, qos_profile_services_default)
+        if subscription.get_publisher_count() < 1:
+            tell(
+                f"No publishers on topic '{name}{SUFFIX}'; is service introspection on the client or server enabled?"
+                " (node.create_service(...).configure_introspection(...))"
+            )
+        with SingleThreadedExecutor(context=context) as executor:
+            executor.add_node(node)
+            executor.spin_until_future_complete(done)
+        if done.done():
+            done.result()

@@ -1,20 +1,42 @@
-"""Client of containers' services, for the commands of `robolink component`."""
+"""The verbs of components: containers and their services, offered types, and a container for one node."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+import threading
+import time
+import uuid
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from robolink.arguments.parameter_file import parse_parameter_value
 from robolink.cli.shared.graph import absolute
-from robolink.cli.shared.output import tell
+from robolink.cli.shared.output import say, tell
 from robolink.cli.shared.session import call_all, looking
+from robolink.companions.ament_index import (
+    get_package_prefix,
+    get_packages_with_prefixes,
+    get_resource,
+    get_resources,
+)
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.interfaces.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.parameter import Parameter
+from robolink.system import clocks
+from robolink.utilities import try_shutdown
 from robolink.wire import EndpointKind
+from robolink.workspace import (
+    NodeLoadError,
+    NodeSource,
+    find_executable,
+    find_package,
+    load_node,
+    named_executables,
+    own_process_needed,
+    sources_of,
+)
 
 SERVICES = "/_container"
 """Part of the names of a container's services, after that of its node."""
@@ -121,3 +143,77 @@ def _parameter(text: str) -> ParameterMsg:
     if not (name and assigned):
         raise ComponentError(f"'{text[:100]}' is not a parameter: expected NAME:=VALUE")
     return Parameter(name, value=parse_parameter_value(value)).to_parameter_msg()
+
+
+RESOURCE = "rclcpp_components"
+"""Type of the resource by which packages in C++ register theirs, a line ``TYPE;LIBRARY`` for each."""
+
+
+def offered(package: str = "") -> Iterator[tuple[str, list[str]]]:
+    """Yield the packages that offer components, by name, with these; only `package`, if one is named.
+
+    Raises PackageNotFoundError for a package that is not there.
+    """
+    if package:
+        get_package_prefix(package)  # raises
+    registered = get_resources(RESOURCE)
+    for name in [package] if package else sorted(get_packages_with_prefixes()):
+        found = [each for source in _sources(name) for each in _in_python(source)]
+        if name in registered:
+            lines = get_resource(RESOURCE, name)[0].splitlines()
+            found += [each.partition(";")[0] for each in lines if each]
+        if found:
+            yield name, sorted(found)
+
+
+def _sources(package: str) -> list[NodeSource]:
+    folder = find_package(package)
+    own = [] if folder is None else named_executables(folder)
+    return [*own, *sources_of(package).values()]
+
+
+def _in_python(source: NodeSource) -> Iterator[str]:
+    """Yield the name of an executable that is a Node class: only such a one can share a process."""
+    try:
+        if not own_process_needed(source):
+            yield source.name
+    except NodeLoadError:  # a file with a mistake
+        return
+
+
+BEGINS_WITHIN = 20.0
+"""Timeout of the container's announcement, in s."""
+
+
+def run(wanted: Wanted, container: str = "") -> None:
+    """Run a container, and a component in it, until Ctrl-C.
+
+    Args:
+        wanted: The component.
+        container: Name of the container's node; '' takes one that nobody has.
+
+    Raises:
+        RobolinkError: if the component cannot be loaded.
+    """
+    name = container or f"standalone_container_{uuid.uuid4().hex[:12]}"
+    failures: list[RobolinkError] = []
+    thread = threading.Thread(target=_load, args=(name, wanted, failures), name="loading", daemon=True)
+    serve: Any = load_node(find_executable("rclcpp_components", "component_container"))
+    sys.argv = ["component_container", "--ros-args", "-r", f"__node:={name}"]
+    thread.start()
+    serve()
+    if failures:
+        raise failures[0]
+
+
+def _load(name: str, wanted: Wanted, failures: list[RobolinkError]) -> None:
+    """Load the component as soon as the container is there; end the container if that fails."""
+    try:
+        deadline = clocks.monotonic() + BEGINS_WITHIN
+        while f"/{name}" not in containers() and clocks.monotonic() < deadline:
+            time.sleep(0.05)
+        answer = load(f"/{name}", wanted)
+        say(f"Loaded component {answer.unique_id} into '{name}' container node as '{answer.full_node_name}'")
+    except RobolinkError as error:
+        failures.append(error)
+        try_shutdown()

@@ -1,4 +1,4 @@
-"""Sending of a goal for `robolink action send_goal`: shows feedback and result, and cancels it at Ctrl-C."""
+"""The verbs of actions: lists with types, the nodes of an action, and goals with their feedback."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.action.graph import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
 from robolink.cli.shared import messages
-from robolink.cli.shared.graph import domains_with, hint
+from robolink.cli.shared.graph import absolute, domains_with, endpoints, hint, sections_of
 from robolink.cli.shared.messages import GivenRequest, message_of
-from robolink.cli.shared.output import say, tell
-from robolink.cli.shared.session import node_of
+from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.session import looking, node_of
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.interfaces import find, is_named
@@ -30,6 +30,45 @@ if TYPE_CHECKING:
     from robolink.interfaces.unique_identifier_msgs.msg import UUID
     from robolink.message import Action
     from robolink.node import Node
+    from robolink.wire import EndpointToken
+
+
+TITLES = {"Action clients": "Action Clients", "Action servers": "Action Servers"}
+"""Printed titles, each with the section of `node info` that it is made from."""
+
+
+def show(action: str, *, types: bool, count: bool, as_json: bool) -> None:
+    """Show the servers and clients. Raises NotFoundError for an action that has neither."""
+    name = absolute(action)
+    with looking() as context:
+        nodes = _nodes(endpoints(context))
+    users = {
+        title: {node: used[title][name] for node, used in nodes.items() if name in used[title]} for title in TITLES
+    }
+    if not any(users.values()):
+        known = {each for used in nodes.values() for actions in used.values() for each in actions}
+        raise NotFoundError("action", shown(name), known, f"domain {context.get_domain_id()}")
+    if as_json:
+        say_json({"name": name, **{title.lower().replace(" ", "_"): found for title, found in users.items()}})
+        return
+    say(f"Action: {name}")
+    for title, found in users.items():
+        say(f"{title}: {len(found)}")
+        for node, its_types in found.items() if not count else ():
+            say(f"    {node} [{', '.join(its_types)}]" if types else f"    {node}")
+
+
+def _nodes(ends: list[EndpointToken]) -> dict[str, dict[str, dict[str, list[str]]]]:
+    """Return, for each node, the actions that it is a client of and that it serves, each with its types."""
+    of_node: dict[str, list[EndpointToken]] = {}
+    for each in ends:
+        of_node.setdefault(each.full_node_name, []).append(each)
+    found = {}
+    for node in sorted(of_node):
+        sections = dict(sections_of(of_node[node], hidden=True))
+        found[node] = {title: dict(sections[section]) for title, section in TITLES.items()}
+    return found
+
 
 PATIENCE = 1.0
 """Wait for a server until the reason is printed, in seconds."""
@@ -116,11 +155,11 @@ def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadli
     """Wait until the action is served, with the type that is named, if one is; return its class."""
     from robolink.cli.shared.messages import action_type
 
-    if not _served(context, given):
+    if not _is_served(context, given):
         _check_early(given)
     manner.say("Waiting for an action server to become available...")
     patience = clocks.monotonic() + PATIENCE
-    while not context.graph.wait_for(lambda: _served(context, given), _SLICE):
+    while not context.graph.wait_for(lambda: _is_served(context, given), _SLICE):
         now = clocks.monotonic()
         if now >= deadline:
             raise GoalError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
@@ -137,7 +176,7 @@ def _check_early(given: GivenRequest) -> None:
             message_of(find(given.type_, "action").Goal, given.values)
 
 
-def _served(context: Context, given: GivenRequest) -> bool:
+def _is_served(context: Context, given: GivenRequest) -> bool:
     others = ((EndpointKind.SERVICE, GET_RESULT), (EndpointKind.PUBLISHER, FEEDBACK))
     if not all(context.graph.endpoints(kind, name=part_name(given.name, part)) for kind, part in others):
         return False
