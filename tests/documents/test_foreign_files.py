@@ -132,7 +132,7 @@ def test_extensions_of_urdf_that_are_in_use_are_no_mistakes(tmp_path: Path, exte
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         read_urdf(path)
-        read_section(str(path))
+        read_section(path)
 
 
 def test_a_parameter_that_no_node_declares_is_told(log_lines: list[Record], tmp_path: Path) -> None:
