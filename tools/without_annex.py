@@ -1,6 +1,7 @@
 """Tries robolink without one of its annexes: the rest of the fast tests pass in a copy whose folders of it are deleted.
 
     python -m tools.without_annex view                     # or several names, or --all
+    python -m tools.without_annex --all --together         # in one copy, which has none of them
     python -m tools.without_annex view -- tests/cli -x     # words after -- are pytest's: some tests, other options
 
 An annex is what people can do without. No other room imports it: each finds it by a name in a registry, or a table of
@@ -17,7 +18,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -105,19 +106,19 @@ def copied(to: Path) -> None:
             shutil.copy2(ROOT / name, to / name)
 
 
-def delete(annex: str, folder: Path) -> None:
-    """Delete an annex from a copy."""
-    for pattern in ANNEXES[annex]:
+def delete(annexes: Iterable[str], folder: Path) -> None:
+    """Delete annexes from a copy."""
+    for pattern in (pattern for annex in annexes for pattern in ANNEXES[annex]):
         for each in list(folder.glob(pattern)):
             shutil.rmtree(each) if each.is_dir() else each.unlink()
 
 
-def tried(annex: str, options: list[str]) -> int:
-    """Run the fast tests without an annex; return pytest's exit code."""
-    with tempfile.TemporaryDirectory(prefix=f"without-{annex}-", ignore_cleanup_errors=True) as name:
+def tried(annexes: list[str], options: list[str]) -> int:
+    """Run the fast tests without some annexes; return pytest's exit code."""
+    with tempfile.TemporaryDirectory(prefix="without-annex-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         copied(folder)
-        delete(annex, folder)
+        delete(annexes, folder)
         # The virtual environment has the original's path: this one goes first.
         environ = {**os.environ, "PYTHONPATH": name, "PYTHONDONTWRITEBYTECODE": ""}
         where = "import sys, robolink; sys.exit(not robolink.__file__.startswith(sys.argv[1]))"
@@ -125,30 +126,27 @@ def tried(annex: str, options: list[str]) -> int:
         return subprocess.call([sys.executable, "-m", "pytest", *FAST, *options], cwd=folder, env=environ)
 
 
-def say(lines: Iterator[str]) -> None:
-    """Write lines to standard output, as they come."""
-    for each in lines:
-        sys.stdout.write(f"{each}\n")
-        sys.stdout.flush()
-
-
-def outcomes(annexes: list[str], options: list[str], codes: list[int]) -> Iterator[str]:
-    """Yield a line before each annex is tried, and one with the outcome; add the exit codes to a list."""
-    for each in annexes:
-        yield f"--- without {each}"
-        codes.append(tried(each, options))
-        yield f"--- without {each}: {'passed' if codes[-1] == 0 else f'failed (pytest ended with {codes[-1]})'}"
+def say(line: str) -> None:
+    """Write a line to standard output, before what pytest writes there."""
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
 
 
 def main(words: list[str]) -> int:
-    """Try what a command line requests; return the exit code."""
+    """Try what a command line requests; return the highest of pytest's exit codes."""
     own, options = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, [])
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("annex", nargs="*", choices=[*ANNEXES, []], help=f"{', '.join(ANNEXES)}")
+    parser.add_argument("annex", nargs="*", choices=[*ANNEXES, []], help=", ".join(ANNEXES))
     parser.add_argument("--all", action="store_true", help="each annex in turn")
+    parser.add_argument("--together", action="store_true", help="delete all that are named from one copy")
     requested = parser.parse_args(own)
-    codes: list[int] = []
-    say(outcomes(list(ANNEXES) if requested.all else requested.annex, options, codes))
+    names = list(ANNEXES) if requested.all else requested.annex
+    codes = []
+    for each in [names] if requested.together else [[name] for name in names]:
+        say(f"--- without {', '.join(each)}")
+        codes.append(tried(each, options))
+        outcome = f"failed (pytest ended with {codes[-1]})" if codes[-1] else "passed"
+        say(f"--- without {', '.join(each)}: {outcome}")
     return max(codes, default=2)
 
 

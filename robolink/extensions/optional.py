@@ -81,7 +81,7 @@ def page(node: Any, *, port: int | None = None, exercises: Any = None) -> Abstra
     Args:
         node: Node that looks at the running system.
         port: Port; None takes the default one, or the next that is free.
-        exercises: Exercises for the panel `learn`, with the methods of `robolink.view.exercises.Exercises`.
+        exercises: Exercises for the panel `learn`, with the methods of `robolink.view.server.learning.Exercises`.
 
     Raises:
         MissingPartError: (an ImportError) If this installation lacks `robolink view`.

@@ -23,7 +23,7 @@ from robolink.system.terminal import fit, shown
 
 Check = Callable[..., Report]
 Operation = dict[str, Any]
-"""Operation for the page, as `robolink.view.exercises` describes it: its name under `op`, and its fields."""
+"""Operation for the page, as `robolink.view.server.learning` describes it: its name under `op`, and its fields."""
 WARNING, ERROR = 1, 2
 """Levels of a status that the page shows."""
 

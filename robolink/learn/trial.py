@@ -14,7 +14,7 @@ from robolink.learn.exercise import Exercise, ExerciseError
 from robolink.learn.report import Line, Track
 
 if TYPE_CHECKING:
-    from robolink.learn.track import Tracker
+    from robolink.learn.report import Tracker
     from robolink.testing import System
     from robolink.testing.robots import SimulatedRobot
 
@@ -185,7 +185,7 @@ class Trial:
 
 def _tracker_of(system: System) -> Tracker | None:
     from robolink.host.host_time import HostTime
-    from robolink.learn.track import Tracker
+    from robolink.learn.report import Tracker
 
     time = system.node.context.time
     return Tracker(time, system.simulations) if isinstance(time, HostTime) else None

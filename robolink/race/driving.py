@@ -18,7 +18,7 @@ from robolink.workspace import find_node
 
 if TYPE_CHECKING:
     from robolink.node import Node
-    from robolink.race.judges import Judge
+    from robolink.race.races import Judge
     from robolink.testing import System
     from robolink.testing.robots import SimulatedRobot
 

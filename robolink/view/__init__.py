@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from robolink.node import Node
-    from robolink.view.exercises import Exercises
     from robolink.view.server import View
+    from robolink.view.server.learning import Exercises
 
 
 def page_of(node: Node, port: int | None = None, exercises: Exercises | None = None) -> View:

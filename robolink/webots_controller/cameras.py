@@ -15,7 +15,7 @@ from robolink.image.png import png_of
 from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image
 from robolink.subscription import Subscription
 from robolink.webots_controller.recognition import CameraRecognitionObject, Lens, Recognizer
-from robolink.webots_controller.topic_sensor import Sensor
+from robolink.webots_controller.sensors import Sensor
 
 ValueT = TypeVar("ValueT")
 

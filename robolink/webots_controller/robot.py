@@ -14,11 +14,19 @@ from robolink.node import Node
 from robolink.publisher import Publisher
 from robolink.spinning import spin_once
 from robolink.text.names import spelled
-from robolink.webots_controller.any_device import SENSORS, AnyDevice
 from robolink.webots_controller.cameras import Camera, RangeFinder
-from robolink.webots_controller.motors import Motor, PositionSensor
-from robolink.webots_controller.robot_topics import RobotTopics, quoted, words_of
-from robolink.webots_controller.sensors import Accelerometer, DistanceSensor, Gyro, InertialUnit, Lidar, TouchSensor
+from robolink.webots_controller.motors import SENSORS, AnyDevice, Motor, PositionSensor
+from robolink.webots_controller.sensors import (
+    Accelerometer,
+    DistanceSensor,
+    Gyro,
+    InertialUnit,
+    Lidar,
+    RobotTopics,
+    TouchSensor,
+    quoted,
+    words_of,
+)
 
 AGAIN = 100_000_000
 """Period of repeated commands in ns of simulated time: a world stops motors without commands."""

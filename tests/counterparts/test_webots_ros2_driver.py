@@ -23,7 +23,7 @@ from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_system
 from robolink.testing import System
 from robolink.webots_controller import webots_controller
-from robolink.webots_controller.robot_topics import words_of
+from robolink.webots_controller.sensors import words_of
 from tests.support.systems import log
 from tests.support.webots_package import CART, EYES, make_webots_package, robot, urdf
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from robolink.learn import track as tracks
 from robolink.learn.checking import check
 from robolink.learn.exercise import chosen, read_course
 from robolink.learn.report import Report
@@ -44,7 +43,7 @@ def test_a_robot_that_hits_a_wall_is_seen_to_do_so(whole: Report) -> None:
 
 
 def test_a_long_run_is_thinned(whole: Report, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(tracks, "MOST_POSES", 60)
+    monkeypatch.setattr("robolink.learn.report.MOST_POSES", 60)
     thin = given("stop", tmp_path).track
     assert whole.track is not None
     assert thin is not None
@@ -70,7 +69,7 @@ def test_a_world_that_cannot_be_looked_at_changes_no_result(
     def broken(*_: object) -> None:
         raise RuntimeError("no")
 
-    monkeypatch.setattr(tracks._Path, "add", broken)
+    monkeypatch.setattr("robolink.learn.report._Path.add", broken)
     report = given("stop", tmp_path)
     assert report.lines == whole.lines
     assert report.mistake is None

@@ -14,8 +14,7 @@ from robolink.race.apart import race_all, run_one
 from robolink.race.driving import Drive
 from robolink.race.programs import programs_of
 from robolink.race.races import RACES
-from robolink.race.result import Result, ranked
-from robolink.race.table import as_csv, rows, table
+from robolink.race.result import Result, as_csv, ranked, rows, table
 from robolink.sim.worldfile import check_world
 
 STANDS = """

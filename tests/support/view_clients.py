@@ -16,8 +16,8 @@ from websockets.sync.client import ClientConnection, connect
 from robolink import Context, Node
 from robolink.executors import SingleThreadedExecutor
 from robolink.transport.memory import Bus, MemoryTransport
-from robolink.view.exercises import Exercises
 from robolink.view.server import Settings, View
+from robolink.view.server.learning import Exercises
 from robolink.view.sources.live import LiveSource
 
 WITHIN = 10.0

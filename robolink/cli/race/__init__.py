@@ -48,12 +48,11 @@ def race(
         raise typer.BadParameter("--json and --csv do not go together")
     from robolink.cli.shared.languages import spoken
     from robolink.grading.mistakes import Mistake
-    from robolink.race import table
     from robolink.race.apart import race_all
     from robolink.race.programs import programs_of, without_program
     from robolink.race.races import RACES as RULES
-    from robolink.race.result import Result
-    from robolink.race.table import words
+    from robolink.race.result import Result, noted, rows, table, words
+    from robolink.race.result import as_csv as csv_of
 
     rules, tongue = RULES[name], spoken(language)
     programs = programs_of(name, files)
@@ -65,15 +64,15 @@ def race(
         rules,
         programs,
         seed,
-        on_done=lambda each: _note(table.noted(each, tongue)) if many else None,
+        on_done=lambda each: _note(noted(each, tongue)) if many else None,
     )
     if as_json:
-        say_json(table.rows(rules, results, seed))
+        say_json(rows(rules, results, seed))
     elif as_csv:
-        say(table.as_csv(rules, results, seed).removesuffix("\n"))
+        say(csv_of(rules, results, seed).removesuffix("\n"))
     else:
         results += [Result(each, mistake=Mistake("no program", f"{name}.py")) for each in others]
-        for line in table.table(rules, results, seed, tongue):
+        for line in table(rules, results, seed, tongue):
             say(line)
 
 

@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from robolink.counterparts.turtlesim.picture import Drawn
-from robolink.counterparts.turtlesim.rotation import Rotation
-from robolink.counterparts.turtlesim.turtle import SIZE, Pen
+from robolink.counterparts.turtlesim.turtle import SIZE, Pen, Rotation
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.turtlesim.msg import Color, Pose
 from robolink.interfaces.turtlesim.srv import SetPen, TeleportAbsolute, TeleportRelative

@@ -5,24 +5,40 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.action import ActionServer, CancelResponse
+from robolink.interfaces.turtlesim.action import RotateAbsolute
+from robolink.task import Future
+
+if TYPE_CHECKING:
+    from robolink.action.server import ServerGoalHandle
+    from robolink.node import Node
 
 SIDE = 500
 """Width and height of the window, in pixels."""
+
 METRE = 45.0
 """Pixels of a metre: the height of turtlesim's pictures of turtles."""
+
 SIZE = (SIDE - 1) / METRE
 """Width and height of the window, in metres: 11.088889."""
+
 CENTRE: float = struct.unpack("f", struct.pack("f", SIZE / 2))[0]
 """Coordinates of the first turtle, in metres, as a float32: 5.544445."""
+
 PERIOD = 0.016
 """Seconds of a step: 62.5 Hz."""
+
 COMMAND_LASTS = 1.0
 """Seconds for which a turtle obeys a command."""
+
 TURN_SPEED = 1.0
 """Speed of a turn to a heading, in rad/s."""
+
 TURN_REACHED = 0.02
 """Radians from the heading at which a turn ends."""
+
 MOST = 1e6
 """Largest number that a turtle obeys, in any unit: with larger ones it would compute no poses, and no messages."""
 
@@ -172,3 +188,78 @@ def normalized(angle: float) -> float:
 
 def _sane(value: float) -> float:
     return min(max(value, -MOST), MOST) if math.isfinite(value) else 0.0
+
+
+class Rotation:
+    """Server of the action of one turtle.
+
+    Args:
+        node: Node of the server.
+        name: Name of the turtle.
+        turtle: The turtle that is turned.
+    """
+
+    def __init__(self, node: Node, name: str, turtle: Turtle) -> None:
+        self._turtle, self._logger = turtle, node.get_logger()
+        self._goal: ServerGoalHandle | None = None
+        self._ended: Future[Any] = Future()
+        self._result = RotateAbsolute.Result()
+        self._server = ActionServer(
+            node,
+            RotateAbsolute,
+            f"{name}/rotate_absolute",
+            self._execute,
+            handle_accepted_callback=self._accept,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        )
+
+    def destroy(self) -> None:
+        """End the server, and the goal with it."""
+        self.abort()
+        self._server.destroy()
+
+    def abort(self, why: str = "") -> None:
+        """Abort the goal, if there is one, and warn of it."""
+        if self._goal is None:
+            return
+        if why:
+            self._logger.warning(why)
+        self._goal.abort()
+        self._end()
+
+    def cancel_if_asked(self) -> None:
+        """Cancel the goal, and let the turtle stand, if a client has asked for that."""
+        if self._goal is not None and self._goal.is_cancel_requested:
+            self._logger.info("Rotation goal canceled")
+            self._goal.canceled()
+            self._turtle.stop()
+            self._end()
+
+    def report(self, turn: Turn) -> None:
+        """Send the state of the turn as feedback, and the result once the heading is reached."""
+        if self._goal is None:
+            return
+        self._result.delta = turn.delta
+        self._goal.publish_feedback(RotateAbsolute.Feedback(remaining=turn.remaining))
+        if turn.is_reached:
+            self._logger.info("Rotation goal completed successfully")
+            self._goal.succeed()
+            self._end()
+
+    def _accept(self, goal: ServerGoalHandle) -> None:
+        self.abort("Rotation goal received before a previous goal finished. Aborting previous goal")
+        self._goal, self._ended, self._result = goal, Future(), RotateAbsolute.Result()
+        self._turtle.turn_to(goal.request.theta)
+        ended = self._ended
+        goal.execute(lambda goal: _awaited(ended))
+
+    async def _execute(self, goal: ServerGoalHandle) -> Any:
+        raise NotImplementedError("each goal is executed by a function of its own")
+
+    def _end(self) -> None:
+        self._goal = None
+        self._ended.set_result(self._result)
+
+
+async def _awaited(ended: Future[Any]) -> Any:
+    return await ended

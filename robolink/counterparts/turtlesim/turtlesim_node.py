@@ -12,9 +12,8 @@ from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.counterparts.turtlesim.picture import BACKGROUND, Canvas, Colour
 from robolink.counterparts.turtlesim.running_turtle import RunningTurtle
-from robolink.counterparts.turtlesim.terminal import draw_in_terminal, terminal_room
 from robolink.counterparts.turtlesim.turtle import CENTRE, PERIOD, Turtle
-from robolink.counterparts.turtlesim.window import window
+from robolink.counterparts.turtlesim.window import draw_in_terminal, terminal_room, window
 from robolink.exceptions import ExternalShutdownException
 from robolink.image.png import png_of
 from robolink.interfaces.rcl_interfaces.msg import ParameterEvent

@@ -13,9 +13,15 @@ from typing import Any
 
 import robolink
 from robolink.context import Context
-from robolink.counterparts.webots_ros2_driver.plugins import IMU, WebotsNode, load_plugin, why_left_out
 from robolink.counterparts.webots_ros2_driver.relays import Relay, make_relays
-from robolink.counterparts.webots_ros2_driver.section import Section, read_section
+from robolink.counterparts.webots_ros2_driver.section import (
+    IMU,
+    Section,
+    WebotsNode,
+    load_plugin,
+    read_section,
+    why_left_out,
+)
 from robolink.documents.foreign import warnings_to
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.executors import SingleThreadedExecutor
@@ -26,7 +32,7 @@ from robolink.parameters.descriptors import described
 from robolink.signals import SignalHandlerOptions
 from robolink.text.names import spelled
 from robolink.webots_controller.robot import ALONE, WAIT, Robot
-from robolink.webots_controller.robot_topics import quoted
+from robolink.webots_controller.sensors import quoted
 from robolink.webots_controller.webots_controller import robot_name
 
 COMMAND = "joint_command"

@@ -14,9 +14,7 @@ from robolink.node import Node
 from robolink.subscription import Subscription
 from robolink.text.names import spelled
 from robolink.webots_controller.cameras import Camera, RangeFinder
-from robolink.webots_controller.robot_topics import RobotTopics
-from robolink.webots_controller.sensors import DistanceSensor, InertialUnit, Lidar
-from robolink.webots_controller.topic_sensor import Sensor
+from robolink.webots_controller.sensors import DistanceSensor, InertialUnit, Lidar, RobotTopics, Sensor
 
 KINDS: dict[str, type[Sensor[Any]]] = {
     "Lidar": Lidar,

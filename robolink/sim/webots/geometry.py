@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from robolink.sim.arrays import Array
+from robolink.sim.colours import hex_of
 from robolink.sim.quantities import FARTHEST, Pose
 from robolink.sim.webots.vrml_node import Node
+
+DEEPEST = 12
+"""Most groups, joints and solids inside of each other that are searched for a shape with a colour."""
 
 LEVEL = 0.01
 """Largest lean that counts as upright, in radians: editors save angles with such errors."""
@@ -25,8 +29,46 @@ MOST_POINTS = 500
 """Most corners of a mesh; one with more is made for the eye, not for collisions."""
 
 _TURNS = np.linspace(0.0, math.tau, SIDES, endpoint=False)
+
 RIM = np.column_stack((np.cos(_TURNS), np.sin(_TURNS), np.zeros(SIDES)))
+
 _CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+
+
+def colour_of_look(look: Node | None) -> str | None:
+    """Return the colour of an appearance: `diffuseColor` or `baseColor`; None for none, and for one with a texture."""
+    if look is None:
+        return None
+    if look.type == "PBRAppearance":
+        return None if look.nodes("baseColorMap") else _text(look, "baseColor", 1.0)
+    material = look.node("material") if look.type == "Appearance" else None
+    return None if material is None or look.nodes("texture") else _text(material, "diffuseColor", 0.8)
+
+
+def colour_of_shape(shape: Node) -> str | None:
+    """Return the colour of a Shape, or None."""
+    return colour_of_look(shape.node("appearance")) if "appearance" in shape.fields else None
+
+
+def first_colour(node: Node) -> str | None:
+    """Return the colour of the first shape in a node that has one, or None."""
+    return next((found for shape in _shapes(node, DEEPEST) if (found := colour_of_shape(shape))), None)
+
+
+def _shapes(node: Node, depth: int) -> Iterator[Node]:
+    if node.type == "Shape":
+        yield node
+        return
+    for field in ("children", "endPoint") if depth else ():
+        for child in node.nodes(field) if field in node.fields else ():
+            yield from _shapes(child, depth - 1)
+
+
+def _text(node: Node, field: str, default: float) -> str:
+    red, green, blue = (
+        round(255 * min(max(each, 0.0), 1.0)) for each in node.numbers(field, default, default, default)
+    )
+    return hex_of((red, green, blue))
 
 
 def rounded(value: float) -> float:

@@ -13,9 +13,8 @@ from robolink.sim.checks.robots import robot_problems
 from robolink.sim.description import Drive, GroundTruth, Odom, RobotDescription, Shape, Wheel
 from robolink.sim.quantities import Pose
 from robolink.sim.sensors import Encoders
-from robolink.sim.webots.appearance import first_colour
 from robolink.sim.webots.footprint import Footprint, footprint, merged
-from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, Part, Placement, rounded, turned
+from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, Part, Placement, first_colour, rounded, turned
 from robolink.sim.webots.scene_tree import GROUPS, JOINTS, SOLIDS, Found, inside, mass
 from robolink.sim.webots.sensors import by_lookup_table, lacking, rate_near, sensors
 from robolink.sim.webots.vrml_node import Node

@@ -8,11 +8,9 @@ from typing import NamedTuple
 
 from robolink.sim.description import MOST_OBSTACLES, MOST_ROBOTS
 from robolink.sim.quantities import FARTHEST
-from robolink.sim.webots.appearance import colour_of_look, colour_of_shape
-from robolink.sim.webots.geometry import Part, Placement, box, part
-from robolink.sim.webots.known_fields import KNOWN_FIELDS
+from robolink.sim.webots.geometry import Part, Placement, box, colour_of_look, colour_of_shape, part
 from robolink.sim.webots.sensors import LIDARS
-from robolink.sim.webots.vrml_node import Node
+from robolink.sim.webots.vrml_node import KNOWN_FIELDS, Node
 
 DENSITY = 1000.0
 """Default density of a solid with physics, in kg/m³, as in Webots."""

@@ -13,9 +13,8 @@ from typing import NoReturn
 
 from robolink.documents.foreign import unknown_key
 from robolink.exceptions import DocumentError, nearest
-from robolink.sim.webots.known_fields import KNOWN_FIELDS
 from robolink.sim.webots.protos import Definition, Protos, Scope
-from robolink.sim.webots.vrml_node import DEEPEST, LONGEST, MOST, Field, Node, Source, Value
+from robolink.sim.webots.vrml_node import DEEPEST, KNOWN_FIELDS, LONGEST, MOST, Field, Node, Source, Value
 from robolink.system.files import size
 from robolink.system.terminal import shown
 

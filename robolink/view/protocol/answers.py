@@ -1,4 +1,4 @@
-"""Encoder of the server's messages: JSON operations as text, binary ones and batches as bytes, frames of both."""
+"""Words and messages of the server: Foxglove's numbers, JSON operations as text, binary ones and batches as bytes."""
 
 from __future__ import annotations
 
@@ -8,17 +8,39 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from robolink.view.protocol.subprotocols import ERROR
-
 _message = struct.Struct("<BIQ")
+
 _entry = struct.Struct("<IIQ")
+
 _time = struct.Struct("<BQ")
+
 _service = struct.Struct("<BIII")
+
 _asset = struct.Struct("<BIBI")
+
 _playback = struct.Struct("<BBQfBI")
 
 TEXT, BINARY = 0x81, 0x82
 """First bytes of a WebSocket frame that is whole."""
+
+ROBOLINK = "robolink.v1"
+"""Subprotocol of the page: Foxglove's, with batches, credits, rates, statistics and recording."""
+
+FOXGLOVE_SDK = "foxglove.sdk.v1"
+
+FOXGLOVE_WEBSOCKET = "foxglove.websocket.v1"
+
+SUBPROTOCOLS = (ROBOLINK, FOXGLOVE_SDK, FOXGLOVE_WEBSOCKET)
+"""All of them, the preferred one first."""
+
+INFO, WARNING, ERROR = 0, 1, 2
+"""Levels of a status."""
+
+PLAYING, PAUSED, BUFFERING, ENDED = 0, 1, 2, 3
+"""States of playback."""
+
+ENCODINGS = ("cdr", "json")
+"""Encodings in which clients may publish and call."""
 
 
 class Entry(NamedTuple):

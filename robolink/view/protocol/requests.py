@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 import msgspec
 
 from robolink.exceptions import RobolinkError, nearest
-from robolink.view.protocol.subprotocols import ENCODINGS
+from robolink.view.protocol.answers import ENCODINGS
 
 U32 = Annotated[int, msgspec.Meta(ge=0, le=0xFFFF_FFFF)]
 Name = Annotated[str, msgspec.Meta(max_length=1000)]

@@ -12,7 +12,7 @@ from robolink.message import Service, decode, encode, from_builtins, to_builtins
 from robolink.system.terminal import shown
 from robolink.view.protocol import answers
 from robolink.view.protocol.requests import ProtocolError, ServiceCall
-from robolink.view.server.listener import Listener
+from robolink.view.server.outbox import Listener
 from robolink.view.server.publishing import json_of
 from robolink.view.sources.live import LiveSource
 

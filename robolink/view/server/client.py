@@ -10,8 +10,8 @@ from robolink.exceptions import RobolinkError
 from robolink.system.terminal import shown
 from robolink.view.channels import Channel
 from robolink.view.protocol import answers, requests
+from robolink.view.protocol.answers import ERROR, FOXGLOVE_WEBSOCKET, ROBOLINK, WARNING
 from robolink.view.protocol.requests import ProtocolError
-from robolink.view.protocol.subprotocols import ERROR, FOXGLOVE_WEBSOCKET, ROBOLINK, WARNING
 from robolink.view.server.calling import Calling
 from robolink.view.server.outbox import Outbox, Wire
 from robolink.view.server.publishing import Publishing

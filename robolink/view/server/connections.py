@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from robolink.graph.graph import Graph
 from robolink.view.protocol import answers
-from robolink.view.server.listener import Listener
+from robolink.view.server.outbox import Listener
 from robolink.view.sources.live import LiveSource
 from robolink.wire import EndpointKind
 

@@ -11,13 +11,12 @@ from typing import Any
 from robolink.logging import get_logger
 from robolink.system import clocks
 from robolink.view.channels import LARGEST, Channel, ServiceEntry, Source
-from robolink.view.exercises import Exercises
 from robolink.view.protocol import answers
+from robolink.view.protocol.answers import ENCODINGS, WARNING
 from robolink.view.protocol.requests import PlaybackControl, ProtocolError
-from robolink.view.protocol.subprotocols import ENCODINGS, WARNING
 from robolink.view.server.client import Client
 from robolink.view.server.connections import Connections
-from robolink.view.server.learning import Learning
+from robolink.view.server.learning import Exercises, Learning
 from robolink.view.server.parameters import Parameters
 from robolink.view.server.recording import Recorder
 from robolink.view.server.statistics import PERIOD as STATISTICS

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from robolink.view.channels import LARGEST, Kept, Take
-from robolink.view.protocol.answers import Entry, batch, head, message_frames
+from robolink.view.protocol.answers import ERROR, Entry, batch, head, message_frames
 from robolink.wire import gid_in
 
 MEMORY = LARGEST
@@ -22,6 +22,22 @@ MOST_LATCHED = 5000
 """Messages of one latched topic that wait for a client that takes none, as a page in a hidden tab: as many as its log
 shows. Without this bound, days of small ones fill the memory, and looking through them on each tick stalls the loop.
 """
+
+
+class Listener(Protocol):
+    """Receiver of answers."""
+
+    is_page: bool
+    """True for robolink's own page, which is told more."""
+
+    def say(self, text: str) -> None:
+        """Send an operation in JSON."""
+
+    def send(self, body: bytes) -> None:
+        """Send a binary operation."""
+
+    def complain(self, message: str, level: int = ERROR) -> None:
+        """Report, as a status, what is wrong."""
 
 
 class Wire(Protocol):

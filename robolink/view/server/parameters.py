@@ -17,10 +17,10 @@ from robolink.interfaces.rcl_interfaces.srv import GetParameters, ListParameters
 from robolink.message import decode, encode
 from robolink.view.channels import Channel
 from robolink.view.protocol import answers
+from robolink.view.protocol.answers import ERROR, WARNING
 from robolink.view.protocol.parameters import ParameterName, from_json, name_of, to_json
 from robolink.view.protocol.requests import ParameterWish
-from robolink.view.protocol.subprotocols import ERROR, WARNING
-from robolink.view.server.listener import Listener
+from robolink.view.server.outbox import Listener
 from robolink.view.sources.live import LiveSource
 
 EVENTS = "/parameter_events"

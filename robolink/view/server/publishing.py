@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import msgspec
@@ -9,9 +10,8 @@ import msgspec
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find
 from robolink.message import decode, encode, from_builtins
+from robolink.view.protocol.answers import ENCODINGS
 from robolink.view.protocol.requests import ClientChannel, ProtocolError
-from robolink.view.protocol.subprotocols import ENCODINGS
-from robolink.view.server.driving import DRIVEN, moves, stop_of
 from robolink.view.sources.live import LiveSource
 
 STOP_AFTER = 1.0
@@ -19,8 +19,12 @@ STOP_AFTER = 1.0
 
 A page that freezes keeps its connection for a quarter of a minute.
 """
+
 MOST_CHANNELS = 500
 """Upper bound of the channels that one client may publish on."""
+
+DRIVEN = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+"""Types of messages that set robots in motion."""
 
 
 class _Outgoing:
@@ -144,3 +148,27 @@ def json_of(payload: bytes, what: str) -> Any:
 def _class_of(system: LiveSource, name: str) -> type[Any]:
     known = system.types.named(name)
     return find(name) if known is None else known
+
+
+def moves(message: Any) -> bool:
+    """True if a Twist or TwistStamped is not all zeros."""
+    twist = getattr(message, "twist", message)
+    return any((*_numbers(twist.linear), *_numbers(twist.angular)))
+
+
+def stop_of(message: Any, now: int) -> Any:
+    """Return the message of zeros for whatever the given one moves.
+
+    Args:
+        message: Twist or TwistStamped that was sent last.
+        now: Time for its header, in ns.
+    """
+    stopped = type(message)()
+    if hasattr(message, "header"):
+        stopped.header = copy.deepcopy(message.header)
+        stopped.header.stamp.sec, stopped.header.stamp.nanosec = divmod(now, 10**9)
+    return stopped
+
+
+def _numbers(vector: Any) -> tuple[float, float, float]:
+    return vector.x, vector.y, vector.z

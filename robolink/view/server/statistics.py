@@ -10,7 +10,7 @@ import psutil
 from robolink.system import clocks
 from robolink.view.channels import Channel, Source
 from robolink.view.protocol import answers
-from robolink.view.server.listener import Listener
+from robolink.view.server.outbox import Listener
 
 PERIOD = 1.0
 """Interval of the statistics, in seconds."""

@@ -24,12 +24,11 @@ from websockets.protocol import State
 from robolink.exceptions import RobolinkError
 from robolink.system import clocks, waits
 from robolink.view.channels import Source
-from robolink.view.exercises import Exercises
-from robolink.view.protocol.subprotocols import SUBPROTOCOLS
-from robolink.view.server import files
-from robolink.view.server.access import Access, Verdict, bracketed, is_any
+from robolink.view.protocol.answers import SUBPROTOCOLS
+from robolink.view.server.access import HEADERS, Access, Verdict, bracketed, find, is_any
 from robolink.view.server.client import Client
 from robolink.view.server.hub import MOST_CLIENTS, Hub
+from robolink.view.server.learning import Exercises
 
 if TYPE_CHECKING:
     from websockets.typing import Subprotocol
@@ -244,7 +243,7 @@ class View:
         if path == "/" and verdict.by_address:
             cookie = f"{self._access.cookie}={quote(self._access.token, safe='')}; HttpOnly; SameSite=Strict; Path=/"
             return _response(http.HTTPStatus.SEE_OTHER, "", {"Location": "/", "Set-Cookie": cookie})
-        found = files.find(path)
+        found = find(path)
         if found is None:
             return _response(http.HTTPStatus.NOT_FOUND, "there is no such file")
         return _response(http.HTTPStatus.OK, found.body, {"Content-Type": found.content_type})
@@ -320,7 +319,5 @@ def _send_less_ahead(wire: asyncio.Transport) -> None:
 
 def _response(code: http.HTTPStatus, body: str | bytes, more: dict[str, str] | None = None) -> Response:
     raw = f"{body}\n".encode() if isinstance(body, str) else body
-    given = (
-        {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(raw))} | files.HEADERS | (more or {})
-    )
+    given = {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(raw))} | HEADERS | (more or {})
     return Response(code.value, code.phrase, Headers(given), raw)

@@ -19,8 +19,8 @@ from robolink.interfaces import find_announced
 from robolink.system import clocks
 from robolink.view.channels import Audience, Channel, Kept, ServiceEntry
 from robolink.view.protocol import answers
+from robolink.view.protocol.answers import ENDED, PAUSED, PLAYING, WARNING
 from robolink.view.protocol.requests import PlaybackControl
-from robolink.view.protocol.subprotocols import ENDED, PAUSED, PLAYING, WARNING
 
 BUDGET = 20_000_000
 """Longest time that one sweep reads, in ns; a bag that is played faster than that is played slower."""

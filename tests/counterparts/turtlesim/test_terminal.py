@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolink.counterparts.turtlesim.picture import BACKGROUND, Canvas, Drawn
-from robolink.counterparts.turtlesim.terminal import NoTerminalWindowError, half_blocks, terminal_room
+from robolink.counterparts.turtlesim.window import NoTerminalWindowError, half_blocks, terminal_room
 from tests.support.commands import ROBOLINK, TERMINAL, Command
 
 COLOUR = re.compile(r"\x1b\[[34]8;2;(\d+);(\d+);(\d+)m")

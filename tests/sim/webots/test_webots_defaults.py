@@ -11,9 +11,8 @@ import pytest
 from robolink.documents import yamlfile
 from robolink.sim.sensors import Lidar
 from robolink.sim.webots import read
-from robolink.sim.webots.known_fields import KNOWN_FIELDS
 from robolink.sim.webots.sensors import LIDARS
-from robolink.sim.webots.vrml_node import Node
+from robolink.sim.webots.vrml_node import KNOWN_FIELDS, Node
 
 FACTS: Any = yamlfile.parse((Path(__file__).parents[2] / "data" / "webots_defaults.yaml").read_text())
 ALL = """#VRML_SIM R2023b utf8

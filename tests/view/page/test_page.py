@@ -12,7 +12,7 @@ from robolink.bag.reader import open_bag
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.view.server import Settings, View
-from robolink.view.server.files import find
+from robolink.view.server.access import find
 from robolink.view.sources.bag import BagSource
 from tests.support.bags import ten_messages, write
 from tests.support.browser import Browser, needs_chromium

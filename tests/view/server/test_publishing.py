@@ -10,7 +10,7 @@ import pytest
 from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.serialization import deserialize_message, serialize_message
 from robolink.view.server import publishing
-from robolink.view.server.driving import moves, stop_of
+from robolink.view.server.publishing import moves, stop_of
 from tests.support.view_clients import Client, Shown, shown, until
 
 STOPS_WITHIN = 0.3
