@@ -55,7 +55,7 @@ ANNEXES = {
     "webots": [
         "robolink/sim/webots",
         "robolink/webots_controller",
-        "robolink/companions/webots_ros2_driver",
+        "robolink/launch/ros/webots_ros2_driver.py",
         "robolink/counterparts/webots_ros2_driver",
         "tests/sim/webots",
         "tests/webots_controller",

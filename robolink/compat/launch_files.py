@@ -16,7 +16,7 @@ from types import ModuleType
 from robolink.compat.maker import hidden, room_of
 from robolink.extensions.optional import is_here
 
-ROOMS = {"webots_ros2_driver.webots_controller": "robolink.companions.webots_ros2_driver.webots_controller"}
+ROOMS = {"webots_ros2_driver.webots_controller": "robolink.launch.ros.webots_ros2_driver"}
 """Modules for launch files, by ROS 2's name."""
 
 

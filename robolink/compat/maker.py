@@ -8,11 +8,10 @@ import importlib.util
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
-from robolink.compat.launch_names import LAUNCH_ROOMS
-from robolink.compat.names import ROOMS, instead_of, snake_case
+from robolink.compat.names import LAUNCH_ROOMS, ROOMS, instead_of, snake_case
 from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
 from robolink.interfaces.standard import packages, set_home, types_of
@@ -162,8 +161,14 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     sys.modules[fullname] = module
     package, _, kind = fullname.partition(".")
     holds_types = room.startswith(f"{TYPES}.") and kind in KINDS
-    if holds_types or any(name.startswith(f"{fullname}.") for name in ROOMS):
+    inner = [name for name in ROOMS if name.startswith(f"{fullname}.")]
+    if holds_types or inner:
         vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
+    for name in inner:
+        if isinstance(vars(module).get(name.rpartition(".")[2]), FunctionType):
+            # ROS 2's launch.frontend.parse_substitution is a module and, after the import of its package, the function.
+            # An import of the module that finds it here does not set the package's attribute once more.
+            sys.modules.setdefault(name, importlib.import_module(ROOMS[name]))
     if holds_types:
         set_home(package, kind, functools.partial(_home, fullname))
     own = vars(module).get("__getattr__")
@@ -183,10 +188,22 @@ def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, 
             return own(name)
     except AttributeError:
         pass
-    if f"{fullname}.{name}" in LAUNCH_ROOMS:  # ROS 2's launch imports all of its modules itself
-        return importlib.import_module(f"{fullname}.{name}")
+    inner = _inner(module, name)
+    if inner:
+        return importlib.import_module(inner)
     known = functools.partial(names_in, module)
     raise lacking(fullname, name, known, sys._getframe(1), _home_of(fullname, name)) from None
+
+
+def _inner(module: ModuleType, name: str) -> str:
+    """Return ROS 2's name of a module within a module of launch, which imports all of its modules itself; '' for none.
+
+    One module of robolink's may have several of ROS 2's names.
+    """
+    if name.startswith("_"):
+        return ""
+    names = [each for each, found in sys.modules.copy().items() if found is module]
+    return next((f"{each}.{name}" for each in names if f"{each}.{name}" in LAUNCH_ROOMS), "")
 
 
 def _home_of(fullname: str, name: str) -> str:

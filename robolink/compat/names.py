@@ -4,13 +4,88 @@ from __future__ import annotations
 
 import re
 
-from robolink.compat.launch_names import LAUNCH_ROOMS
 from robolink.extensions.optional import is_here
+
+_LAUNCH = """
+launch launch.bases action condition event event_handler launch_context launch_description_entity some_actions_type
+launch launch.bases some_entities_type some_substitutions_type substitution
+launch launch.sources invalid_launch_file_error launch_description launch_description_source
+launch launch.sources launch_description_sources
+launch launch launch_introspector launch_service
+launch launch.actions descriptions descriptions.executable
+launch.actions launch.actions emit_event execute_local execute_process for_loop group_action log_info
+launch.actions launch.actions opaque_coroutine opaque_function register_event_handler shutdown_action timer_action
+launch.actions launch.actions unregister_event_handler
+launch.actions launch.settings append_environment_variable declare_launch_argument pop_environment
+launch.actions launch.settings pop_launch_configurations push_environment push_launch_configurations
+launch.actions launch.settings reset_environment reset_launch_configurations set_environment_variable
+launch.actions launch.settings set_launch_configuration unset_environment_variable unset_launch_configuration
+launch.actions launch.sources include_launch_description
+launch.conditions launch.conditions evaluate_condition_expression_impl if_condition invalid_condition_expression_error
+launch.conditions launch.conditions launch_configuration_equals launch_configuration_not_equals unless_condition
+launch.event_handlers launch.event_handlers event_named on_action_event_base on_execution_complete
+launch.event_handlers launch.event_handlers on_include_launch_description on_process_exit on_process_io
+launch.event_handlers launch.event_handlers on_process_start on_shutdown
+launch.events launch.events execution_complete include_launch_description matchers process shutdown timer_event
+launch.events.process launch.events process_exited process_io process_matchers process_started process_stderr
+launch.events.process launch.events process_stdin process_stdout process_targeted_event running_process_event
+launch.events.process launch.events shutdown_process signal_process
+launch.frontend launch.frontend parse_substitution
+launch.launch_description_sources launch.sources any_launch_description_source frontend_launch_description_source
+launch.launch_description_sources launch.sources python_launch_description_source python_launch_file_utilities
+launch.substitutions launch.substitutions anon_name boolean_substitution command environment_variable
+launch.substitutions launch.substitutions equals_substitution file_content find_executable if_else_substitution
+launch.substitutions launch.substitutions launch_configuration launch_log_dir local_substitution
+launch.substitutions launch.substitutions not_equals_substitution path_join_substitution python_expression
+launch.substitutions launch.substitutions string_join_substitution substitution_failure this_launch_file
+launch.substitutions launch.substitutions this_launch_file_dir
+launch.substitutions launch.utilities text_substitution
+launch_ros launch_ros.descriptions parameter_descriptions
+launch_ros launch_ros.events event_handlers
+launch_ros.actions launch_ros.actions composable_node_container lifecycle_node lifecycle_transition
+launch_ros.actions launch_ros.actions load_composable_nodes node push_ros_namespace ros_timer set_parameter
+launch_ros.actions launch_ros.actions set_parameters_from_file set_remap set_ros_log_dir set_use_sim_time
+launch_ros.descriptions launch_ros.descriptions composable_node parameter_file
+launch_ros.event_handlers launch_ros.events on_state_transition
+launch_ros.events launch_ros.events lifecycle matchers
+launch_ros.events.lifecycle launch_ros.events change_state lifecycle_node_matchers state_transition
+launch_ros.events.matchers launch_ros.events matches_node_name
+launch_ros.substitutions launch_ros.substitutions executable_in_package find_package parameter
+launch_xml launch_frontend launch_description_sources
+launch_xml launch_frontend.elements entity
+launch_yaml launch_frontend launch_description_sources
+launch_yaml launch_frontend.elements entity
+launch_testing launch_testing.declarations actions event_handlers legacy markers parametrize
+launch_testing launch_testing.handlers asserts io_handler proc_info_handler util
+launch_testing.tools launch_testing.tools output process
+launch_testing_ros launch_testing_ros data_republisher message_pump tools wait_for_topics
+nav2_common nav2_common launch
+"""
+"""A package of ROS 2's launch, the module of robolink's, and the modules of the package that this one stands for: ROS 2
+has a file for nearly each class."""
+_LAUNCH_TOPS = {
+    "launch": "launch",
+    "launch_ros": "launch_ros",
+    "launch_xml": "launch_frontend",
+    "launch_yaml": "launch_frontend",
+    "launch_testing": "launch_testing",
+    "launch_testing_ros": "launch_testing_ros",
+}
+
+LAUNCH_ROOMS = {
+    **{name: f"robolink.launch.ros.{room}" for name, room in _LAUNCH_TOPS.items()},
+    **{
+        f"{package}.{name}": f"robolink.launch.ros.{room}"
+        for package, room, *names in map(str.split, _LAUNCH.strip().splitlines())
+        for name in names
+    },
+}
+"""Modules of ROS 2's launch by name, as in `ROOMS`."""
 
 OPTIONAL = {
     "webots_ros2_driver": "robolink.webots_controller",
     **{
-        f"webots_ros2_driver.{name}": f"robolink.companions.webots_ros2_driver.{name}"
+        f"webots_ros2_driver.{name}": "robolink.launch.ros.webots_ros2_driver"
         for name in ("urdf_spawner", "utils", "wait_for_controller_connection", "webots_launcher")
     },
 }
@@ -41,9 +116,7 @@ ROOMS = {
     "ament_index_python": "robolink.companions.ament_index",
     "rosbag2_py": "robolink.companions.rosbag2_py",
     "diagnostic_updater": "robolink.companions.diagnostic_updater",
-    "launch_testing": "robolink.companions.launch_testing",
-    "launch_testing_ros": "robolink.companions.launch_testing_ros",
-    "nav2_common": "robolink.companions.nav2_common",
+    "nav2_common": "",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     **LAUNCH_ROOMS,
     **{name: room for name, room in OPTIONAL.items() if is_here(room)},

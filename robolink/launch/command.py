@@ -146,7 +146,7 @@ def _director(
     """Return the maker of a supervisor's director; what is added is planned as the rest. None where nothing goes on."""
     if direct is None:
         return None
-    from robolink.launch.ros.process_stage import ProcessStage
+    from robolink.launch.ros.stage import ProcessStage
 
     return lambda supervisor: direct(
         stack.enter_context(ProcessStage(supervisor, lambda added: _to_run(processes(added), watches)))

@@ -21,7 +21,7 @@ from robolink.workspace import Folder
 from robolink.workspace.find import YAML
 
 if TYPE_CHECKING:
-    from robolink.companions.launch import LaunchDescription
+    from robolink.launch.ros.launch import LaunchDescription
     from robolink.launch.ros.visit import Visit
 
 T = TypeVar("T")
@@ -55,7 +55,7 @@ def read_system(
     if not is_of_ros(path):
         entries = read_launch_file(path, given, workspace=workspace)
         return System(entries, list(section_notes(entries)))
-    from robolink.launch.ros.reading import foresee_all, visited
+    from robolink.launch.ros.visit import foresee_all, visited
 
     visit = visited(path, given, workspace)
     if foresee:
@@ -74,7 +74,7 @@ def read_description(description: LaunchDescription, path: Path, given: Mapping[
     Raises:
         DocumentError: for a mistake in it, with `file:line`.
     """
-    from robolink.launch.ros.reading import visited
+    from robolink.launch.ros.visit import visited
 
     return _system_of(visited(path, given, None, description), foresee=False)
 
@@ -124,7 +124,7 @@ def arguments_of(path: str | os.PathLike[str], *, workspace: Folder = None) -> l
     """
     if not is_of_ros(Path(path)):
         return own_arguments_of(path)
-    from robolink.launch.ros import reading
+    from robolink.launch.ros import visit as reading
 
     return reading.arguments_of(Path(path), workspace)
 

@@ -152,9 +152,13 @@ def _module(name: str, room: str, names: set[str]) -> str:
         module = importlib.import_module(room)
     except ImportError:  # it needs a library that is not installed
         return "from typing import Any\n\ndef __getattr__(name: str) -> Any: ...\n"
-    lines = [f"from {source} import {inner} as {outer}" for outer, (source, inner) in sorted(_homes(module).items())]
     inside = sorted(each.rpartition(".")[2] for each in names if each.rpartition(".")[0] == name)
-    lines += [f"from {name} import {each} as {each}" for each in inside if each not in _homes(module)]
+    homes = _homes(module)
+    for each in inside:
+        if isinstance(getattr(module, each, None), ModuleType):
+            homes.pop(each, None)  # the checker finds the stub of a module that robolink has in the same file
+    lines = [f"from {source} import {inner} as {outer}" for outer, (source, inner) in sorted(homes.items())]
+    lines += [f"from {name} import {each} as {each}" for each in inside if each not in homes]
     return "\n".join(lines) + "\n"
 
 

@@ -20,17 +20,16 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robolink.companions.launch import LaunchDescription
-from robolink.companions.launch.actions import RegisterEventHandler, TimerAction
-from robolink.companions.launch.bases import Event, EventHandler, LaunchContext
-from robolink.companions.launch.described import Described, described
-from robolink.companions.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from robolink.companions.launch.events.process import ProcessExited, ProcessIO, ProcessStarted
-from robolink.companions.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
-from robolink.companions.launch_testing.actions import ReadyEvent, ReadyToTest
-from robolink.companions.launch_testing.parametrize import PARAMETERS
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.launch.lookup import home_of
+from robolink.launch.ros.launch import LaunchDescription
+from robolink.launch.ros.launch.actions import RegisterEventHandler, TimerAction
+from robolink.launch.ros.launch.bases import Event, EventHandler, LaunchContext
+from robolink.launch.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
+from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
+from robolink.launch.ros.launch.sources import Described, described
+from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
+from robolink.launch.ros.launch_testing.declarations import PARAMETERS, ReadyEvent, ReadyToTest
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
 from robolink.system import waits
@@ -245,7 +244,7 @@ def _restore(before: Mapping[str, str | None]) -> None:
 
 DESCRIBE = "generate_test_description"
 """Name of the function that a launch test has."""
-_RUNNERS = ("_pytest", "pluggy", "robolink.testing", "robolink.companions.launch_testing")
+_RUNNERS = ("_pytest", "pluggy", "robolink.testing", "robolink.launch.ros.launch_testing")
 OWN_MARKS = ("launch_test", "rostest")
 """Marks that only say what the function is."""
 

@@ -17,7 +17,7 @@ from robolink.context import Context
 from robolink.exceptions import RobolinkError
 from robolink.launch.planning import Launched, as_process, processes
 from robolink.launch.readiness import Readiness
-from robolink.launch.ros.process_stage import ProcessStage
+from robolink.launch.ros.stage import ProcessStage
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.events import Event, Exited, Status
 from robolink.supervisor.rules import Rules

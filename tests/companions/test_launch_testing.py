@@ -10,13 +10,14 @@ from typing import Any
 
 import pytest
 
-from robolink.companions import launch_testing
-from robolink.companions.launch.actions import ExecuteProcess
-from robolink.companions.launch.bases import LaunchArgumentError
-from robolink.companions.launch.events.process import ProcessExited, ProcessIO, ProcessStarted
-from robolink.companions.launch_testing import ActiveIoHandler, ActiveProcInfoHandler, asserts, tools
-from robolink.companions.launch_testing.parametrize import PARAMETERS
-from robolink.companions.launch_testing.util import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
+from robolink.launch.ros import launch_testing
+from robolink.launch.ros.launch.actions import ExecuteProcess
+from robolink.launch.ros.launch.bases import LaunchArgumentError
+from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
+from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler, tools
+from robolink.launch.ros.launch_testing import handlers as asserts
+from robolink.launch.ros.launch_testing.declarations import PARAMETERS
+from robolink.launch.ros.launch_testing.handlers import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
 
 
 def process(name: str, *words: str) -> ExecuteProcess:

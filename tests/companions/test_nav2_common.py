@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.companions.launch import LaunchContext
-from robolink.companions.launch.bases import LaunchError
-from robolink.companions.launch.conditions import IfCondition
-from robolink.companions.launch.substitutions import LaunchConfiguration
-from robolink.companions.nav2_common.launch import HasNodeParams, LaunchConfigAsBool, ReplaceString, RewrittenYaml
 from robolink.documents.yamlfile import parse, spell
+from robolink.launch.ros.launch import LaunchContext
+from robolink.launch.ros.launch.bases import LaunchError
+from robolink.launch.ros.launch.conditions import IfCondition
+from robolink.launch.ros.launch.substitutions import LaunchConfiguration
+from robolink.launch.ros.nav2_common import HasNodeParams, LaunchConfigAsBool, ReplaceString, RewrittenYaml
 
 SOURCE = """
 amcl:

@@ -101,6 +101,16 @@ def test_private_modules_have_the_parts_of_services_and_actions() -> None:
 
 
 @pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize("name", ["launch.frontend.parse_substitution", "launch_testing.parametrize"])
+def test_a_function_stays_one_though_its_module_has_its_name(name: str) -> None:
+    package, _, function = name.rpartition(".")
+    scope: dict[str, Any] = {}
+    exec(f"import {package}\nfrom {name} import {function} as inner\nfrom {package} import {function} as outer", scope)
+    assert scope["outer"] is scope["inner"]
+    assert callable(scope["inner"])
+
+
+@pytest.mark.usefixtures("compat")
 @pytest.mark.parametrize(
     ("name", "attribute", "room"),
     [
@@ -217,7 +227,7 @@ def test_a_name_that_is_missing(code: str, kind: type[Exception], report: str) -
     [
         ("image_transport", "CompressedImage"),
         ("tf2_kdl", "tf2_geometry_msgs"),
-        ("launch_pytest", "pytest runs tests of launch_testing"),
+        ("launch_pytest", "pytest runs its tests"),
         ("rospy", "ROS 1"),
         ("move_base_msgs", "NavigateToPose"),
         ("ros2topic", "get_topic_names_and_types"),

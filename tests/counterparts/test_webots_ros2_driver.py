@@ -12,13 +12,13 @@ from typing import Any
 import pytest
 
 from robolink.cli.main import main
-from robolink.companions.launch_ros.actions import Node as NodeAction
 from robolink.counterparts.webots_ros2_driver.relays import DeviceError, as_webots_scan, period
 from robolink.counterparts.webots_ros2_driver.section import read_section
 from robolink.exceptions import DocumentError
 from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, Range
+from robolink.launch.ros.launch_ros.actions import Node as NodeAction
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_system
 from robolink.testing import System

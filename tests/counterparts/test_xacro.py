@@ -8,12 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from robolink.companions.launch.bases import LaunchContext
-from robolink.companions.launch.substitutions.commands import Command
-from robolink.companions.launch.substitutions.failure import SubstitutionFailure
 from robolink.counterparts.urdf import parse_urdf
 from robolink.counterparts.xacro import expanded, xacro
 from robolink.exceptions import DocumentError, RobolinkError
+from robolink.launch.ros.launch.bases import LaunchContext
+from robolink.launch.ros.launch.substitutions import Command, SubstitutionFailure
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 WHEELS = """<xacro:arg name="prefix" default="my_"/>

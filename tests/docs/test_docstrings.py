@@ -31,6 +31,12 @@ WHOLE = (
     "executors",
     "geometry",
     "impl/rcutils_logger.py",
+    "launch/ros/launch",
+    "launch/ros/launch_ros",
+    "launch/ros/launch_testing",
+    "launch/ros/launch_testing_ros.py",
+    "launch/ros/nav2_common.py",
+    "launch/ros/webots_ros2_driver.py",
     "sensor_msgs_py",
     "tf2/geometry.py",
 )

@@ -21,9 +21,6 @@ from robolink.bag.playing.player import Player
 from robolink.cli.main import main
 from robolink.clock import ROSClock
 from robolink.clock_type import ClockType
-from robolink.companions.launch_testing.io_handler import ActiveIoHandler
-from robolink.companions.launch_testing.proc_info_handler import ActiveProcInfoHandler
-from robolink.companions.launch_testing_ros.wait_for_topics import WaitForTopics
 from robolink.duration import Duration
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
@@ -31,6 +28,8 @@ from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.std_msgs.msg import Empty as EmptyMsg
 from robolink.interfaces.std_srvs.srv import Empty
 from robolink.interfaces.tf2_msgs.action import LookupTransform
+from robolink.launch.ros.launch_testing.handlers import ActiveIoHandler, ActiveProcInfoHandler
+from robolink.launch.ros.launch_testing_ros import WaitForTopics
 from robolink.parameter_client import AsyncParameterClient
 from robolink.running.timebase import SystemTime
 from robolink.system import waits

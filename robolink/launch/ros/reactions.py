@@ -10,23 +10,23 @@ import itertools
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from robolink.companions.launch import events
-from robolink.companions.launch.actions import EmitEvent, ExecuteLocal, TimerAction
-from robolink.companions.launch.bases import BaseEventHandler, Event, LaunchDescriptionEntity, entities_in
-from robolink.companions.launch.event_handlers import OnProcessIO, OnShutdown
-from robolink.companions.launch.events import process as process_events
-from robolink.companions.launch.utilities import is_true
-from robolink.companions.launch_ros.actions.lifecycle import LifecycleNode, transitions
-from robolink.companions.launch_ros.events.lifecycle import ChangeState, StateTransition
 from robolink.exceptions import DocumentError
 from robolink.launch.entry import Stage
+from robolink.launch.ros.launch import events
+from robolink.launch.ros.launch import events as process_events
+from robolink.launch.ros.launch.actions import EmitEvent, ExecuteLocal, TimerAction
+from robolink.launch.ros.launch.bases import BaseEventHandler, Event, LaunchDescriptionEntity, entities_in
+from robolink.launch.ros.launch.event_handlers import OnProcessIO, OnShutdown
+from robolink.launch.ros.launch.utilities import is_true
+from robolink.launch.ros.launch_ros.actions import LifecycleNode, transitions
+from robolink.launch.ros.launch_ros.events import ChangeState, StateTransition
 from robolink.launch.ros.surroundings import roots_of, surroundings
 from robolink.launch.ros.visit import Started, Visit
 from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
 
 if TYPE_CHECKING:
     from robolink.interfaces.lifecycle_msgs.msg import TransitionEvent
-    from robolink.launch.ros.lifecycle import Lifecycles
+    from robolink.launch.ros.stage import Lifecycles
 
 MOST_EVENTS = 10_000
 """Most events that may follow from each other at one time; two handlers that emit events might go on for ever."""
@@ -246,7 +246,7 @@ class Reactions(Generic[T]):
 
     def _own_lifecycles(self) -> Lifecycles:
         if self._lifecycles is None:
-            from robolink.launch.ros.lifecycle import Lifecycles  # late: it needs the classes of messages
+            from robolink.launch.ros.stage import Lifecycles  # late: it needs the classes of messages
 
             def say(text: str) -> None:
                 self._stage.post(lambda now: [Tell(text)])

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.running_nodes import runner
-from robolink.companions.launch_frontend.xml_reader import read_xml
 from robolink.exceptions import DocumentError
+from robolink.launch.ros.launch_frontend.elements import read_xml
 
 
 def test_the_place_of_an_error_in_xml_is_the_line_that_asked_for_it(tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from robolink.companions.launch import LaunchContext
-from robolink.companions.launch.substitutions import Command, FileContent, commands
-from robolink.companions.launch.substitutions.failure import SubstitutionFailure
+from robolink.launch.ros.launch import LaunchContext
+from robolink.launch.ros.launch import substitutions as commands
+from robolink.launch.ros.launch.substitutions import Command, FileContent, SubstitutionFailure
 
 
 @pytest.fixture(autouse=True)

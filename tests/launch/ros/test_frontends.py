@@ -10,12 +10,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from robolink.cli.main import main
-from robolink.companions.launch.frontend.parse_substitution import parse_substitution
-from robolink.companions.launch_frontend.entity import words_of
 from robolink.exceptions import DocumentError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.launch.entry import System as LaunchSystem
 from robolink.launch.lookup import is_of_ros
+from robolink.launch.ros.launch.frontend import parse_substitution
+from robolink.launch.ros.launch_frontend.elements import words_of
 from robolink.launch.system import arguments_of, read_system
 from robolink.testing import System
 from tests.support.launched_systems import said

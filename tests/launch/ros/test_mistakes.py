@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.companions.launch import LaunchContext, LaunchIntrospector
-from robolink.companions.launch.bases import LaunchError
-from robolink.companions.launch.frontend import parse_substitution
-from robolink.companions.launch.launch_description_sources import PythonLaunchDescriptionSource
-from robolink.companions.launch.utilities import perform_substitutions
 from robolink.exceptions import DocumentError
+from robolink.launch.ros.launch import LaunchContext, LaunchIntrospector
+from robolink.launch.ros.launch.bases import LaunchError
+from robolink.launch.ros.launch.frontend import parse_substitution
+from robolink.launch.ros.launch.sources import PythonLaunchDescriptionSource
+from robolink.launch.ros.launch.utilities import perform_substitutions
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import arguments_of, read_system
 from tests.support.ros_launch import FIRST, read, write

@@ -1,5 +1,0 @@
-"""Loggers of launch files (`launch.logging`): robolink's own."""
-
-from robolink.logging import get_logger
-
-__all__ = ["get_logger"]

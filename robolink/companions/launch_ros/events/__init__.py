@@ -1,5 +1,0 @@
-"""Events about nodes (`launch_ros.events`)."""
-
-from robolink.companions.launch_ros.events import lifecycle, matchers
-
-__all__ = ["lifecycle", "matchers"]

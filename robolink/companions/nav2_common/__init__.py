@@ -1,1 +1,0 @@
-"""nav2_common: the substitutions with which launch files of Nav2 rewrite parameter files."""

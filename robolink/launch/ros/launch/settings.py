@@ -1,0 +1,233 @@
+"""Actions that declare arguments, and that set launch configurations and the environment (`launch.actions`)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from robolink.exceptions import nearest
+from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType
+from robolink.launch.ros.launch.utilities import (
+    boolean,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+    performed,
+)
+from robolink.system.terminal import shown
+
+_CONFIGURATIONS = "launch_configurations"
+
+
+class SetLaunchConfiguration(Action):
+    """Set a launch configuration.
+
+    Args:
+        name: Its name.
+        value: Its value.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name, self.value = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        name = perform_substitutions(context, self.name)
+        context.launch_configurations[name] = perform_substitutions(context, self.value)
+
+
+class UnsetLaunchConfiguration(Action):
+    """Remove a launch configuration.
+
+    Args:
+        name: Its name.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove it from `context`."""
+        context.launch_configurations.pop(perform_substitutions(context, self.name), None)
+
+
+class PushLaunchConfigurations(Action):
+    """Begin a scope: what is set from here on ends with PopLaunchConfigurations."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Begin it in `context`."""
+        context.push(_CONFIGURATIONS)
+
+
+class PopLaunchConfigurations(Action):
+    """End a scope."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """End it in `context`."""
+        context.pop(_CONFIGURATIONS)
+
+
+class ResetLaunchConfigurations(Action):
+    """Remove all launch configurations but some.
+
+    Args:
+        launch_configurations: Those that are set afterwards, by name; their values may use the ones before.
+        **kwargs: `condition`.
+    """
+
+    def __init__(
+        self,
+        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self._kept = dict(launch_configurations or {})
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove them from `context`."""
+        kept = {performed(context, name): performed(context, value) for name, value in self._kept.items()}
+        context.launch_configurations.clear()
+        context.launch_configurations.update(kept)
+
+
+class DeclareLaunchArgument(Action):
+    """Launch argument, which `LaunchConfiguration` reads.
+
+    Args:
+        name: Name of the argument.
+        default_value: Value where none is given; without one it must be given.
+        description: Description for people.
+        choices: The values that are allowed; None allows all.
+        **kwargs: `condition`.
+    """
+
+    NO_DESCRIPTION = "no description given"
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: SomeSubstitutionsType | None = None,
+        description: str | None = None,
+        choices: Iterable[str] | None = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.name, self.description = name, description or self.NO_DESCRIPTION
+        self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        self.choices = None if choices is None else list(choices)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set the default value in `context` if none was given; raises LaunchError for a value that is no choice."""
+        known = context.launch_configurations
+        context.asked.add(self.name)
+        if self.name not in known:
+            if self.default_value is None:
+                about = "" if self.description == self.NO_DESCRIPTION else f" ({shown(self.description)})"
+                raise LaunchError(f"'{self.name}' must be given{about}: {self.name}:=VALUE")
+            known[self.name] = perform_substitutions(context, self.default_value)
+        value = known[self.name]
+        if self.choices is not None and value not in self.choices:
+            allowed = ", ".join(self.choices)
+            raise LaunchError(f"'{self.name}' is one of {allowed}, got '{shown(value)}'{nearest(value, self.choices)}")
+
+
+_ENVIRONMENT = "environment"
+
+
+class SetEnvironmentVariable(Action):
+    """Set an environment variable.
+
+    Args:
+        name: Its name.
+        value: Its value.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name, self.value = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        name = perform_substitutions(context, self.name)
+        context.environment[name] = perform_substitutions(context, self.value)
+
+
+class AppendEnvironmentVariable(Action):
+    """Add to an environment variable, such as a list of folders.
+
+    Args:
+        name: Its name.
+        value: What is added.
+        prepend: True adds it in front.
+        separator: Text between the values.
+        **kwargs: `condition`.
+    """
+
+    def __init__(
+        self,
+        name: SomeSubstitutionsType,
+        value: SomeSubstitutionsType,
+        prepend: bool | SomeSubstitutionsType = False,
+        separator: SomeSubstitutionsType = os.pathsep,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.name, self.value = normalize_to_list_of_substitutions(name), normalize_to_list_of_substitutions(value)
+        self.separator = normalize_to_list_of_substitutions(separator)
+        self.prepend = prepend
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add it in `context`."""
+        name, value, between = (
+            perform_substitutions(context, each) for each in (self.name, self.value, self.separator)
+        )
+        before = context.environment.get(name, "")
+        parts = [value, before] if boolean(context, self.prepend) else [before, value]
+        context.environment[name] = between.join(filter(None, parts))
+
+
+class UnsetEnvironmentVariable(Action):
+    """Remove an environment variable.
+
+    Args:
+        name: Its name.
+        **kwargs: `condition`.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove it from `context`."""
+        context.environment.pop(perform_substitutions(context, self.name), None)
+
+
+class PushEnvironment(Action):
+    """Begin a scope: what is set from here on ends with PopEnvironment."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Begin it in `context`."""
+        context.push(_ENVIRONMENT)
+
+
+class PopEnvironment(Action):
+    """End a scope."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """End it in `context`."""
+        context.pop(_ENVIRONMENT)
+
+
+class ResetEnvironment(Action):
+    """Set the environment back to the launcher's."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Do it in `context`."""
+        context.reset_environment()
