@@ -1,25 +1,26 @@
-"""Undeclared parameters: warnings of those that were given to a program and that no node of it declares.
+"""Undeclared parameters: warnings of those that no node of a program declares, and of file sections that none takes.
 
 Most are misspelt, and ROS 2 keeps silent about them. The section `/**` of a file is for any node: no warning.
 """
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol
 
-from robolink.arguments.untaken import untaken
+from robolink.arguments.overrides import Override
 from robolink.exceptions import ExternalShutdownException, closest, nearest
 from robolink.logging import get_logger
+from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
     from robolink.arguments.command_line import Arguments
-    from robolink.arguments.overrides import Override
     from robolink.impl.rcutils_logger import RcutilsLogger
 
 ALIKE = 0.75
-"""Least similarity of a given name and a declared one (difflib's ratio) for a warning before the end."""
+"""Least similarity (difflib's ratio) by which a given name is a misspelt parameter, or a section's a misspelt node."""
 
 
 class OverriddenNode(Protocol):
@@ -108,3 +109,47 @@ class GivenParameters:
 
 def _warn(override: Override, logger: str, what: str) -> None:
     get_logger(logger).warning(f"parameter '{override.name}' was given, but {what}")
+
+
+_NUMBER = re.compile(r"[0-9]+")
+
+MOST = 3
+"""Largest number of sections that are told of where nothing of all files is for any node."""
+
+
+def untaken(overrides: Iterable[Override], names: Collection[str]) -> Iterator[str]:
+    """Yield a line for each section of files that is for no node, as "'batery' is not the name of a node ...".
+
+    A file may be for more nodes than are here, so a section is told of only if it is the one nearest to the name of a
+    node that has none, or if nothing of all files is for any node.
+
+    Args:
+        overrides: The parameters of the files.
+        names: Full names of the nodes that the files were given to.
+    """
+    patterns = {each.pattern: each for each in overrides if not each.is_typed}
+    known = set(names)
+    lost = [each for each in patterns if "*" not in each and each not in known]
+    if not lost:
+        return
+    free = sorted(known - patterns.keys())
+    meant = {_misspelt_for(name, lost): name for name in reversed(free)}
+    has_taker = len(free) < len(known) or any(each.is_for(name) for each in patterns.values() for name in free)
+    told = [each for each in lost if each in meant or not has_taker]
+    most = len(told) if has_taker else MOST
+    for pattern in told[:most]:
+        name = meant.get(pattern)
+        hint = f"did you mean '{name.lstrip('/')}'?" if name else _listed(names)
+        yield f"'{shown(pattern.lstrip('/'))}' is not the name of a node that gets it ({hint})"
+    if told[most:]:
+        yield f"{len(told) - most} other sections are for no node that gets it, either"
+
+
+def _misspelt_for(name: str, lost: Iterable[str]) -> str:
+    """Return the section nearest to a node's name; '' if none is. Of a fleet, names differ in their numbers alone."""
+    plain = _NUMBER.sub("", name)
+    return closest(name, [each for each in lost if _NUMBER.sub("", each) != plain], ALIKE)
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(f"'{each.lstrip('/')}'" for each in sorted(names)[:3])

@@ -1,13 +1,14 @@
-"""Validation errors of YAML data: converts msgspec's reports to readable messages with line and column."""
+"""Validation errors of YAML data: msgspec's reports as readable messages with line and column, and how many of them."""
 
 from __future__ import annotations
 
 import contextlib
 import copy
+import itertools
 import re
 import types
 import typing
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard, TypeVar
 
 import msgspec
@@ -327,3 +328,19 @@ def _worded(text: str, node: yaml.Node | None, data: Data) -> str:
     was_filled_in = isinstance(data, str | int | float) and "{" in node.value
     found = f"'{shown(str(data) if was_filled_in else node.value)}'"
     return re.sub(r", got .*", "", text) + f", got {found}" if text.startswith("expected") else text
+
+
+MOST_TOLD, MOST_MISTAKES = 20, 100
+"""Most mistakes of a file that are reported, and that are looked for."""
+
+
+def first_mistakes(errors: Iterable[DocumentError], looked_for: int | None = None) -> list[DocumentError]:
+    """Return the first `errors` of a file, and in place of the others one that says how many they are.
+
+    No more than `looked_for` are counted, where finding each takes time.
+    """
+    found = list(itertools.islice(errors, looked_for))
+    if len(found) <= MOST_TOLD + 1:
+        return found
+    more = f"{len(found) - MOST_TOLD:,}" if looked_for is None or len(found) < looked_for else "many"
+    return [*found[:MOST_TOLD], DocumentError(f"and {more} more mistakes", found[MOST_TOLD].file)]

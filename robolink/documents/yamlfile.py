@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 import msgspec
 
-from robolink.documents.limits import MOST_MISTAKES, first_mistakes
-from robolink.documents.mistakes import Hook, Reader, Step, steps_of
+from robolink.documents.mistakes import MOST_MISTAKES, Hook, Reader, Step, first_mistakes, steps_of
 from robolink.exceptions import DocumentError, nearest
 from robolink.system.files import decoded, read_plain
 from robolink.system.terminal import quoted

@@ -17,8 +17,7 @@ from robolink.launch.readiness import Readiness
 from robolink.node import Node
 from robolink.running.defaults import get_defaults
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
-from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
-from robolink.supervisor.rules import Step, described, is_orderly
+from robolink.supervisor.policy import Action, Ask, Policy, Say, Start, Step, described, is_orderly
 from robolink.system.processes import Variables
 from robolink.transport.memory import MemoryTransport
 from robolink.wire import graph_pattern

@@ -15,7 +15,7 @@ from robolink.launch.entry import Entry
 from robolink.launch.planning import Launched
 from robolink.launch.readiness import Awaited
 from robolink.supervisor import Process, Supervisor
-from robolink.supervisor.rules import Rules
+from robolink.supervisor.policy import Rules
 from robolink.system.processes import own_command
 from robolink.workspace.packages import import_roots, source_packages
 

@@ -16,7 +16,7 @@ from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.shared_process import COMMAND, Member, written
 from robolink.networks.asked import NETWORK
 from robolink.supervisor import Process
-from robolink.supervisor.rules import Restarts, Rules
+from robolink.supervisor.policy import Restarts, Rules
 from robolink.system.processes import Variables, own_command
 from robolink.workspace import VARIABLE, Folder, NodeSource, own_process_needed
 

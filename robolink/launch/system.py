@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
 from robolink.arguments.parameter_file import read_parameter_file
-from robolink.arguments.untaken import untaken
+from robolink.arguments.undeclared import untaken
 from robolink.exceptions import DocumentError
 from robolink.launch.entry import ArgumentHelp, Entry, Stage, System
 from robolink.launch.lookup import is_of_ros

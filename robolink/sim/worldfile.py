@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from robolink.documents import yamlfile
-from robolink.documents.limits import MOST_TOLD, first_mistakes
+from robolink.documents.mistakes import MOST_TOLD, first_mistakes
 from robolink.documents.yamlfile import Document
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.extensions.optional import part

@@ -20,7 +20,7 @@ from robolink.interfaces import find_announced
 from robolink.interfaces.rcl_interfaces.msg import Log
 from robolink.message import decoder, encode, type_hash, type_name
 from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.simulate.robots import worlds_of
+from robolink.simulate.nodes import worlds_of
 from robolink.system.processes import ROS_DISTRO
 from robolink.transport.base import NumberingOutlet
 from robolink.wire import NO_HASH, DataKey, parse_key, unpack_attachment

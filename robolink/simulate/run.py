@@ -21,10 +21,9 @@ from robolink.launch import Entry, Launched, processes
 from robolink.logging import LoggingSeverity, Record
 from robolink.qos import QoSProfile
 from robolink.running.timebase import TimeBase
+from robolink.simulate.nodes import robots_of, undeclared
 from robolink.simulate.result import ProgramResult, RobotResult, SimulationResult
-from robolink.simulate.robots import robots_of
 from robolink.simulate.settings import numpy_seeded
-from robolink.simulate.undeclared import undeclared
 from robolink.transport.base import NumberingOutlet
 
 if TYPE_CHECKING:

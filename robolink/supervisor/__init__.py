@@ -1,6 +1,6 @@
 """Process supervisor: starts, prints, restarts and stops several programs as one system; it knows no nodes.
 
-`policy`, by `rules`, is the state machine that decides what starts and stops; it knows neither processes nor the time.
+`policy` has the rules, and the state machine that decides what starts and stops; it knows no processes and no time.
 `supervisor` carries out its actions: with `processes`, one child process each, and with `reporting`: terminal, log
 files and `events` for programs. Other shells use its `control` socket; `monitoring` watches files, CPU and memory.
 
@@ -13,10 +13,10 @@ from robolink.text.suggestions import lazily
 
 if TYPE_CHECKING:
     from robolink.supervisor.events import Event, Status
+    from robolink.supervisor.policy import Restarts, Rules
     from robolink.supervisor.processes.lifeline import watch_lifeline
     from robolink.supervisor.processes.process import Process, ProcessStartError
     from robolink.supervisor.reporting.logs import RunLogs
-    from robolink.supervisor.rules import Restarts, Rules
     from robolink.supervisor.supervisor import Supervisor
 
 __all__ = [
@@ -35,8 +35,8 @@ _HOMES = {
     "Event": "events",
     "Process": "processes.process",
     "ProcessStartError": "processes.process",
-    "Restarts": "rules",
-    "Rules": "rules",
+    "Restarts": "policy",
+    "Rules": "policy",
     "RunLogs": "reporting.logs",
     "Status": "events",
     "Supervisor": "supervisor",

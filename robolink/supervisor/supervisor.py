@@ -17,15 +17,13 @@ from typing import TextIO, TypeAlias
 from robolink.exceptions import NotFoundError
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.events import Status
-from robolink.supervisor.policy import Action, Ask, Policy, Say, Start
+from robolink.supervisor.policy import Action, Ask, Policy, Say, Start, Step
 from robolink.supervisor.processes.affinity import set_affinity
 from robolink.supervisor.processes.guardian import Guardian
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child, Process, ProcessStartError
-from robolink.supervisor.reporting.dispatcher import EventDispatcher
+from robolink.supervisor.reporting.dispatcher import EventDispatcher, OnEvent
 from robolink.supervisor.reporting.logs import RunLogs
-from robolink.supervisor.reporting.notifier import OnEvent
-from robolink.supervisor.rules import Step
 from robolink.system import clocks
 from robolink.system.waits import get_within
 

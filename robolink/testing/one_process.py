@@ -21,7 +21,7 @@ from robolink.launch import processes
 from robolink.message import type_hash
 from robolink.node import Node
 from robolink.simulate.settings import numpy_seeded
-from robolink.supervisor.rules import Step, is_orderly
+from robolink.supervisor.policy import Step, is_orderly
 from robolink.testing.faults import Faults, ProgramFaults
 from robolink.testing.launching import entry_of
 from robolink.testing.stage import Failure, Named, Wanted, full

@@ -14,7 +14,7 @@ from robolink.exceptions import (
 from robolink.parameter import Parameter, parameter_value_to_python
 from robolink.parameter_client import AsyncParameterClient
 from robolink.parameters.rules import WrittenParameter
-from robolink.simulate.undeclared import is_among
+from robolink.simulate.nodes import is_among
 from robolink.testing.expectations import ExpectationError
 from robolink.testing.stage import Named
 from robolink.text.names import meant

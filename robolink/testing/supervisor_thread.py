@@ -20,7 +20,7 @@ from robolink.launch.readiness import Readiness
 from robolink.launch.ros.stage import ProcessStage
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.events import Event, Exited, Status
-from robolink.supervisor.rules import Rules
+from robolink.supervisor.policy import Rules
 from robolink.system import clocks, waits
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.constants import MOST_SEED
 from robolink.interfaces import find
-from robolink.simulate.robots import robots_of, worlds_of
+from robolink.simulate.nodes import robots_of, worlds_of
 from robolink.testing.bags import BagRecording, Bags
 from robolink.testing.clock import SystemClock
 from robolink.testing.expectations import ClosedError, ExpectationError

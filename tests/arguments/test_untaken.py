@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robolink.arguments.overrides import Override
-from robolink.arguments.untaken import untaken
+from robolink.arguments.undeclared import untaken
 from robolink.context import Context
 from robolink.executors import SingleThreadedExecutor
 from robolink.node import Node

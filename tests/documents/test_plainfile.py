@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink.documents import yamltext
-from robolink.documents.limits import first_mistakes
+from robolink.documents.mistakes import first_mistakes
 from robolink.documents.yamlfile import mistakes, read_text
 from robolink.exceptions import DocumentError
 from robolink.exceptions import DocumentError as Error

@@ -21,7 +21,7 @@ from robolink.launch.entry import Entry
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.reading.entries import read_launch_file
 from robolink.supervisor import Process
-from robolink.supervisor.rules import Restarts, Rules
+from robolink.supervisor.policy import Restarts, Rules
 from robolink.system.processes import own_command
 from robolink.workspace import VARIABLE, built_in_workspace
 from tests.support.launchfiles import NODES, make_workspace

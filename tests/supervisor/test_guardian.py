@@ -14,10 +14,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor import Process
+from robolink.supervisor.policy import Step
 from robolink.supervisor.processes.guardian import Guardian, marked, remaining
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline, watch_lifeline
 from robolink.supervisor.processes.process import Child
-from robolink.supervisor.rules import Step
 from robolink.system import clocks
 
 pytestmark = pytest.mark.processes

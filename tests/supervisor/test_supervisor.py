@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from robolink.supervisor import Process, ProcessStartError, Supervisor
+from robolink.supervisor.policy import Step
 from robolink.supervisor.processes.lifeline import Lifeline
 from robolink.supervisor.processes.process import Child
-from robolink.supervisor.rules import Step
 from tests.support.supervised import (
     FOR_EVER,
     IGNORES,

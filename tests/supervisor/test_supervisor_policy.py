@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import strategies as st
 
-from robolink.supervisor.policy import Ask, Policy, Say, Start
-from robolink.supervisor.rules import Restarts, Rules, Step, described
+from robolink.supervisor.policy import Ask, Policy, Restarts, Rules, Say, Start, Step, described
 from tests.support.policies import PLAIN, replay, two
 
 INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL

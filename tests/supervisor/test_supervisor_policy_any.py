@@ -5,8 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.supervisor.policy import Action, Ask, Policy, Start
-from robolink.supervisor.rules import Restarts, Rules
+from robolink.supervisor.policy import Action, Ask, Policy, Restarts, Rules, Start
 from tests.support.policies import tell
 
 names = st.sampled_from("abc")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robolink.supervisor.policy import Say
-from robolink.supervisor.rules import Step, described, is_orderly
+from robolink.supervisor.policy import Say, Step, described, is_orderly
 from tests.support.policies import replay, two
 
 INTERRUPT, TERMINATE, KILL = Step.INTERRUPT, Step.TERMINATE, Step.KILL

@@ -11,8 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.supervisor.monitoring.file_watch import Changes, Stamp, Watch
-from robolink.supervisor.monitoring.imports import Imports, parse
+from robolink.supervisor.monitoring.file_watch import Changes, Imports, Stamp, Watch, parse
 
 PATIENCE = 30.0
 

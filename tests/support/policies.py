@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robolink.supervisor.policy import Action, Policy
-from robolink.supervisor.rules import Rules
+from robolink.supervisor.policy import Action, Policy, Rules
 
 PLAIN = Rules()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink.supervisor import Process
-from robolink.supervisor.rules import Step
+from robolink.supervisor.policy import Step
 
 PATIENCE = 30.0
 

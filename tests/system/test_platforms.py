@@ -29,10 +29,10 @@ from robolink.control.keyboard import WindowsKeyboard
 from robolink.impl import log_output
 from robolink.launch import lookup
 from robolink.running import timebase
+from robolink.supervisor.policy import Step
 from robolink.supervisor.processes import affinity, process
 from robolink.supervisor.processes.process import Child
 from robolink.supervisor.reporting import logs
-from robolink.supervisor.rules import Step
 from robolink.system import clocks, files
 from robolink.system.waits import A_WHILE
 from robolink.transport import network

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 import typer
 import typer.core
 
-from robolink.cli.launching.completion import launch_words
-from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file
-from robolink.cli.launching.schemas import show_launch_schema
+from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file, launch_words, show_launch_schema
 from robolink.cli.shared.layout import aligned
 from robolink.cli.shared.options import GRAPH_FORMATS, choice, seconds
 from robolink.cli.shared.options import enclave as enclave_option
@@ -208,7 +206,7 @@ def _show_arguments(asked: LaunchFile, as_json: bool, workspace: str | None) -> 
 
 
 def _validate(asked: LaunchFile, options: Options) -> int:
-    from robolink.documents.limits import first_mistakes
+    from robolink.documents.mistakes import first_mistakes
     from robolink.launch.looking.validate import Report, found, validate
     from robolink.launch.system import read_system_with_mistakes
 
@@ -312,7 +310,7 @@ def _event_printer() -> Callable[[Any], None]:
 
     import msgspec
 
-    from robolink.supervisor.reporting.writer import Writer
+    from robolink.supervisor.reporting.printer import Writer
     from robolink.system.terminal import fit
 
     writer = Writer(sys.stdout)

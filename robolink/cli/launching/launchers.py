@@ -186,7 +186,7 @@ def _node(node: str, launch: str, verb: str) -> tuple[Launcher, Status]:
 def _stopped(launcher: Launcher, before: Status) -> str:
     """Wait until a node has stopped, and return how it ended, in words. Raises LauncherError after the timeout."""
     from robolink.supervisor.control.client import LauncherError, LauncherGoneError
-    from robolink.supervisor.rules import Step, described, is_orderly
+    from robolink.supervisor.policy import Step, described, is_orderly
 
     deadline = clocks.monotonic() + STOPPED_WITHIN
     while clocks.monotonic() < deadline:
@@ -264,7 +264,7 @@ def _block(launcher: Launcher, answer: Response | str) -> list[str]:
 
 
 def _last_exit(status: Status) -> str:
-    from robolink.supervisor.rules import described
+    from robolink.supervisor.policy import described
 
     return "-" if status.returncode is None else described(status.returncode)
 

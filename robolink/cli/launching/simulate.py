@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from robolink.cli.launching.completion import launch_words
-from robolink.cli.launching.schemas import show_faults_schema
+from robolink.cli.launching.launch_arguments import launch_words, show_faults_schema
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 from robolink.cli.shared.output import say, tell

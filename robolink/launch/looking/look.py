@@ -21,7 +21,7 @@ import msgspec
 
 from robolink.exceptions import RobolinkError
 from robolink.launch.entry import Entry
-from robolink.supervisor.rules import described
+from robolink.supervisor.policy import described
 from robolink.system.processes import own_command
 
 COMMAND = "look-into"

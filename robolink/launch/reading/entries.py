@@ -14,8 +14,7 @@ from pathlib import Path, PurePath
 from types import MappingProxyType
 from typing import Any, TypeVar
 
-from robolink.documents.limits import MOST_MISTAKES, first_mistakes
-from robolink.documents.mistakes import Step
+from robolink.documents.mistakes import MOST_MISTAKES, Step, first_mistakes
 from robolink.exceptions import DocumentError
 from robolink.launch import lookup
 from robolink.launch.entry import MOST_PROCESSES, Entry

@@ -29,7 +29,7 @@ from robolink.launch.ros.launch_ros.actions import (
 )
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
 from robolink.launch.ros.programs import Program, component_of, parameters_of, program_of, texts_of
-from robolink.supervisor.rules import NO_LIMIT
+from robolink.supervisor.policy import NO_LIMIT
 from robolink.system.processes import SHELL, own_command, split_words
 from robolink.system.terminal import shown
 from robolink.validate_namespace import validate_namespace

@@ -27,7 +27,6 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 from robolink.supervisor.processes.lifeline import VARIABLE, Lifeline
-from robolink.supervisor.processes.process_title import ProcessTitle
 from robolink.system import clocks
 from robolink.system.processes import Variables, set_environment
 
@@ -301,3 +300,31 @@ def _adopt(wanted: bool) -> None:
 
     if ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, ctypes.c_ulong(wanted), 0, 0, 0) != 0:
         raise ForkServerError("no orphans can be adopted here")
+
+
+_BEGIN, _END = 48, 49
+"""Fields of /proc/self/stat, counted from 1: the addresses of the command line's first byte and behind its last."""
+_LEAST = 2
+"""Smallest room that is written to, in bytes: one for the end of the text, and the last one."""
+
+
+class ProcessTitle:
+    """Room of this process's command line; `write` does nothing where the system does not say where that is."""
+
+    def __init__(self) -> None:
+        try:
+            fields = Path("/proc/self/stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+            first, end = (int(fields[number - 3]) for number in (_BEGIN, _END))  # the first behind ")" is number 3
+        except (OSError, ValueError, IndexError):
+            first = end = 0
+        self._address, self._room = first, max(0, end - first)
+
+    def write(self, words: Sequence[str]) -> None:
+        """Show these words from now on; they are cut where the room ends."""
+        if self._address == 0 or self._room < _LEAST:
+            return
+        import ctypes
+
+        text = " ".join(words).encode(errors="surrogateescape").replace(b"\0", b" ")[: self._room - _LEAST]
+        # A last byte that is not zero tells the kernel that this is one text, which ends at the first zero.
+        ctypes.memmove(self._address, text.ljust(self._room - 1, b"\0") + b" ", self._room)

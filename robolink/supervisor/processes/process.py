@@ -1,7 +1,8 @@
-"""One child process in a process group of its own: start it, read its lines, stop it."""
+"""One child process in a process group of its own: start it, read its lines, stop it, put the terminal back."""
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import signal
@@ -17,11 +18,10 @@ from pathlib import Path
 from typing import IO, Any
 
 from robolink.exceptions import RobolinkError
+from robolink.supervisor.policy import Rules, Step
 from robolink.supervisor.processes.fork_server import Forked, ForkServer
 from robolink.supervisor.processes.guardian import is_alive, signal_group
 from robolink.supervisor.processes.lifeline import Lifeline
-from robolink.supervisor.processes.terminal import Terminal
-from robolink.supervisor.rules import Rules, Step
 from robolink.system import clocks
 from robolink.system.processes import Variables, environment_with, windows_line
 
@@ -247,3 +247,23 @@ def _own_group() -> dict[str, Any]:
 _SIGNALS = {Step.INTERRUPT: signal.SIGINT, Step.TERMINATE: signal.SIGTERM}
 if sys.platform != "win32":
     _SIGNALS[Step.KILL] = signal.SIGKILL
+
+
+class Terminal:
+    """Snapshot of the settings of the terminal at standard input, for `put_back`; empty where there is none."""
+
+    def __init__(self) -> None:
+        self._found: list[Any] | None = None
+        if sys.platform != "win32" and os.isatty(0):
+            import termios
+
+            self._found = termios.tcgetattr(0)
+
+    def put_back(self) -> None:
+        """Restore the settings, unless the terminal is another job's now, as after `bg`: then the shell does it."""
+        if sys.platform != "win32" and self._found is not None:
+            import termios
+
+            with contextlib.suppress(OSError, termios.error):  # it is gone
+                if os.tcgetpgrp(0) == os.getpgrp():
+                    termios.tcsetattr(0, termios.TCSANOW, self._found)

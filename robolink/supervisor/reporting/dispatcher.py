@@ -1,20 +1,19 @@
-"""Event dispatcher: passes what happens in a system to the terminal, the log files, and programs (`on_event`)."""
+"""Event dispatcher: passes events to the terminal, log files, and programs (`on_event`); causes and summary of ends."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import TextIO
 
 from robolink.supervisor.events import Ended, Event, Exited, Output, Restarting, Said, Started, Stopping
-from robolink.supervisor.policy import Ask, Tracked
-from robolink.supervisor.reporting.background_queue import Troubles
-from robolink.supervisor.reporting.causes import Cause
+from robolink.supervisor.policy import Ask, Tracked, described, is_orderly
+from robolink.supervisor.reporting.background_queue import BackgroundQueue, Troubles
 from robolink.supervisor.reporting.logs import RunLogs
-from robolink.supervisor.reporting.notifier import Notifier, OnEvent
 from robolink.supervisor.reporting.printer import Printer, complain
-from robolink.supervisor.reporting.summary import Summary
-from robolink.supervisor.rules import described, is_orderly
 from robolink.system import clocks
+from robolink.system.terminal import shown
 
 
 class EventDispatcher:
@@ -131,3 +130,134 @@ class EventDispatcher:
     def _happened(self, event: Callable[[float], Event]) -> None:
         if self._notifier is not None:
             self._notifier.put(event(clocks.time_of_day()))
+
+
+OnEvent = Callable[[Event], object]
+_SIZE = 200
+"""Approximate size of an event, in bytes, without its line of output."""
+
+
+class Notifier:
+    """Calls `on_event`, which may raise OSError and ValueError when it cannot write."""
+
+    def __init__(self, on_event: OnEvent, troubles: Troubles) -> None:
+        self._queue: BackgroundQueue[Event] = BackgroundQueue(
+            lambda one: on_event(*one), troubles, name="events", at_once=1
+        )
+
+    def put(self, event: Event) -> None:
+        """Enqueue an event; only one with output ever blocks. All others are few."""
+        if isinstance(event, Output):
+            self._queue.put(event, _SIZE + len(event.line))
+        else:
+            self._queue.put_own(event, _SIZE)
+
+    def close(self, timeout: float = 1.0) -> None:
+        """Deliver what waits, for at most `timeout` seconds."""
+        self._queue.close(timeout)
+
+
+@dataclass
+class Failures:
+    """Last failure of a process in words, and the number of its failures."""
+
+    last: str
+    times: int = 0
+    restarts: int = 0
+
+
+class Summary:
+    """Collects failures; `lines` describes them."""
+
+    def __init__(self) -> None:
+        self._failures: dict[str, Failures] = {}
+
+    def failed(self, name: str, how: str, *, restarts: int, was_asked: bool) -> None:
+        """Note a failure: `world was killed by SIGSEGV`, also of a process that had been asked to stop."""
+        failures = self._failures.setdefault(name, Failures(how))
+        failures.last = f"{how} (when asked to stop)" if was_asked else how
+        failures.times += 1
+        failures.restarts = restarts
+
+    def lines(self, still_running: Iterable[str] = ()) -> list[str]:
+        """Return a line for each process that failed, in the order of their first failures."""
+        told = [_told(each) for each in self._failures.values()]
+        return told + [f"{name} still runs: it could not be killed" for name in still_running]
+
+
+def _told(failures: Failures) -> str:
+    if failures.times == 1 and failures.restarts == 0:
+        return failures.last
+    failed = f"failed {failures.times} times, " if failures.times > 1 else ""
+    times = "once" if failures.restarts == 1 else f"{failures.restarts} times"
+    return f"{failures.last} ({failed}started again {times})"
+
+
+_STALE = 25
+"""Age in lines at which a possible cause is dropped: a program does not end because of older output."""
+_LONGEST = 200
+_COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+_GROUP = re.compile(r"^\s*[+|][ -]")
+"""Prefix of the lines of an exception group."""
+_FRAME = re.compile(r'^\s+File ".*", line \d+(, in .*)?$')
+_HEADER = "Traceback (most recent call last):"
+_CHAINS = (
+    "The above exception was the direct cause of the following exception:",
+    "During handling of the above exception, another exception occurred:",
+)
+_INTERRUPTED = "KeyboardInterrupt"
+_FATAL = ("Fatal Python error: ", "terminate called ")
+"""Beginnings of a fatal error of Python and of an uncaught exception of C++."""
+_NOT_BEGUN = "Fatal Python error: init_"
+"""Beginning of an error in Python's own start, before its program; a Ctrl-C at that time shows as any error."""
+_OWN = "robolink: "
+"""Prefix of an error by which a command of robolink ends."""
+
+
+class Cause:
+    """Line-by-line parser of a program's output; `text` is then the cause of its end, or empty.
+
+    An error that follows from a Ctrl-C has that as its cause: in the middle of an import it may show as any error.
+    """
+
+    def __init__(self) -> None:
+        self._found = ""
+        self._age = 0
+        self._is_in_traceback = self._is_led_to = False
+
+    @property
+    def text(self) -> str:
+        """Cause on one line, for example `ZeroDivisionError: division by zero`."""
+        return self._found if self._age <= _STALE else ""
+
+    def line(self, line: bytes) -> None:
+        """Parse a line."""
+        self._age += 1
+        text = line[: 4 * _LONGEST].decode(errors="replace").rstrip()
+        if "\x1b" in text:
+            text = _COLOURS.sub("", text)
+        if self._is_in_traceback:
+            self._traceback(text)
+        elif text.endswith(_HEADER) or _FRAME.match(text):
+            self._is_in_traceback = True
+        elif text in _CHAINS:
+            self._is_led_to = self._found == _INTERRUPTED
+        elif text.startswith(_OWN):
+            self._note(text.removeprefix(_OWN))
+        elif text.startswith(_FATAL) or text == _INTERRUPTED:  # without a traceback, as early as that
+            self._note(text)
+        elif text.startswith("  what():"):
+            self._note(text.partition(":")[2].strip())
+
+    def _traceback(self, text: str) -> None:
+        """Wait for the line that is not indented: the exception."""
+        plain = _GROUP.sub("", text)
+        if plain and not plain[0].isspace() and not plain.endswith(_HEADER):
+            self._is_in_traceback = False
+            self._note(plain)
+
+    def _note(self, text: str) -> None:
+        if self.text.startswith(_NOT_BEGUN) and text != _INTERRUPTED:
+            return
+        self._found, self._age = _INTERRUPTED if self._is_led_to else shown(text, _LONGEST), 0
+        self._is_led_to = False

@@ -11,7 +11,7 @@ import pytest
 from robolink.launch.entry import Entry, Respawn
 from robolink.launch.planning import as_process, processes
 from robolink.launch.ros import entries
-from robolink.supervisor.rules import NO_LIMIT
+from robolink.supervisor.policy import NO_LIMIT
 from robolink.system.processes import own_command
 from tests.support.ros_launch import FIRST, only, read, write
 

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import msgspec
 import pytest
 
-from robolink.cli.launching.completion import launch_words
+from robolink.cli.launching.launch_arguments import launch_words
 from robolink.cli.main import main
 from robolink.supervisor.control.client import running
 from robolink.supervisor.control.server import Control

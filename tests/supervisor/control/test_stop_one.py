@@ -13,8 +13,7 @@ from robolink.cli.main import main
 from robolink.supervisor.control.client import Launcher, LauncherError
 from robolink.supervisor.control.client import running as all_that_run
 from robolink.supervisor.control.server import Control
-from robolink.supervisor.policy import Ask, Policy, Say
-from robolink.supervisor.rules import Restarts, Rules, Step
+from robolink.supervisor.policy import Ask, Policy, Restarts, Rules, Say, Step
 from tests.support.commands import Command
 from tests.support.launchers import FakeSupervisor
 

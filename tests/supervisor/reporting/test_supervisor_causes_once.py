@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from robolink.supervisor.policy import Policy, Say
-from robolink.supervisor.rules import Restarts, Rules
+from robolink.supervisor.policy import Policy, Restarts, Rules, Say
 
 AGAIN = Rules(Restarts("on_failure", delay=1.0, delay_max=1.0, most=9, within=60.0), "ignore")
 

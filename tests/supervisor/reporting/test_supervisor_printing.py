@@ -16,8 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor.reporting.background_queue import MOST_WAITING, BackgroundQueue, Troubles
-from robolink.supervisor.reporting.printer import Printer, prefixes
-from robolink.supervisor.reporting.writer import Writer
+from robolink.supervisor.reporting.printer import Printer, Writer, prefixes
 
 PATIENCE = 30.0
 

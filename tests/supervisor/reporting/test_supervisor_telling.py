@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 
 from robolink.supervisor import Event, Process, Restarts, Rules, Supervisor
 from robolink.supervisor.events import Output
-from robolink.supervisor.reporting.causes import Cause
-from robolink.supervisor.reporting.summary import Summary
+from robolink.supervisor.reporting.dispatcher import Cause, Summary
 
 TRACEBACK = 'Traceback (most recent call last):\n  File "x.py", line 1, in <module>\n    1 / 0\n    ~~^~~\n'
 GROUP = """\

@@ -1,7 +1,8 @@
-"""Check for parameters that were set for a node which never declared them: most are misspelt."""
+"""Nodes of a simulation: parameters that were set for one which never declared them, simulated worlds, robots."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
     from robolink.host import Host
     from robolink.launch import Launched
     from robolink.node import Node
+    from robolink.sim import Robot
+    from robolink.world_node import Simulation
 
 
 def is_among(name: str, declared: Iterable[str]) -> bool:
@@ -52,3 +55,24 @@ def _may_take_others(node: Node) -> bool:
     from robolink.lifecycle.managed_entity import ManagedEntity  # late: few simulations ask
 
     return node._allow_undeclared_parameters or isinstance(node, ManagedEntity)
+
+
+def worlds_of(nodes: Iterable[Node]) -> Iterator[tuple[Node, Simulation]]:
+    """Yield each node that keeps a `Simulation`, as nodes/world.py does, under whatever name; and the simulation."""
+    room = sys.modules.get("robolink.world_node.simulation")
+    if room is None:  # nobody simulates a world, and pymunk need not be imported to find that out
+        return
+    for node in nodes:
+        for each in list(vars(node).values()):
+            if isinstance(each, room.Simulation):
+                yield node, each
+
+
+def robots_of(nodes: Iterable[Node]) -> Iterator[tuple[str, Robot]]:
+    """Yield the robots of simulated worlds.
+
+    Each comes with its name, and the world's namespace before it where it has one, since there may be several worlds.
+    """
+    for node, simulation in worlds_of(nodes):
+        for robot in simulation.world.robots.values():
+            yield f"{node.get_namespace()}/{robot.name}".lstrip("/"), robot
