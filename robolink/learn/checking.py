@@ -1,24 +1,36 @@
-"""Check of a student's file in this process: runs the exercise's check.py, and makes a report of what comes of it."""
+"""Check of a student's file, in this process or in one of its own, and the report of what comes of it."""
 
 from __future__ import annotations
 
 import importlib.util
 import re
+import threading
 import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from robolink.grading.child import where_asleep
+import msgspec
+
 from robolink.grading.languages import Language
 from robolink.grading.mistakes import Mistake, mistake_elsewhere, mistake_in, mistake_of
-from robolink.learn.exercise import CHECK, Exercise, ExerciseError
+from robolink.grading.process import run_apart
+from robolink.learn.exercise import CHECK, Exercise, ExerciseError, read_exercise
 from robolink.learn.report import Report
 from robolink.learn.trial import Told, Trial
 from robolink.testing.expectations import NodeFailure
 
+if TYPE_CHECKING:
+    pass
+
 _LACKING = re.compile(r"module 'student' has no attribute '(\w+)'.*", re.DOTALL)
+
+LONGEST = 60.0
+"""Seconds of real time after which a check is ended from outside, whatever it does."""
+
+COMMAND = "learn-check"
+"""Hidden command of the process that checks."""
 
 
 def check(
@@ -90,6 +102,8 @@ def _of_use(error: BaseException, trial: Trial) -> Mistake | None:
 
 def _of_program(trial: Trial) -> Mistake | None:
     """Return the mistake of a program that failed, or sleeps, at the very moment at which something was told."""
+    from robolink.grading.child import where_asleep  # late: whoever asks for a check apart needs none of it
+
     try:
         if trial._system is not None:
             trial.system.check()
@@ -124,3 +138,52 @@ def _place(error: BaseException, exercise: Exercise) -> str:
     frames = [each for each in traceback.extract_tb(error.__traceback__) if each.filename.endswith(CHECK)]
     where = f" ({exercise.folder / CHECK}:{frames[-1].lineno})" if frames else f" ({exercise.folder})"
     return f"{type(error).__name__}: {error}".partition("\n")[0] + where
+
+
+def check_apart(
+    exercise: Exercise,
+    file: Path,
+    language: Language,
+    *,
+    longest: float = LONGEST,
+    stop: threading.Event | None = None,
+) -> Report:
+    """Check a student's file in a process of its own, whose working directory is a temporary folder.
+
+    Args:
+        exercise: The exercise.
+        file: The student's file.
+        language: Language of the sentences.
+        longest: Seconds after which the process is killed.
+        stop: Event that ends the check, whose report nobody wants any more; None for none.
+
+    Returns:
+        The report; nothing that the file does raises.
+    """
+    begin = time.perf_counter()
+    file = file.resolve()
+    ended = run_apart([COMMAND, str(exercise.folder.resolve()), str(file), language], file, longest, stop=stop)
+    try:
+        report = msgspec.json.decode(ended.answer, type=Report)
+    except msgspec.DecodeError:
+        report = Report(mistake=ended.mistake)
+    return msgspec.structs.replace(report, printed=ended.printed, seconds=time.perf_counter() - begin)
+
+
+def serve(folder: Path, file: Path, answer: Path, language: Language) -> None:
+    """Check a student's file in this process, which that ends: the other side of `check_apart`.
+
+    Args:
+        folder: Folder of the exercise.
+        file: The student's file.
+        answer: File for the report.
+        language: Language of the sentences.
+    """
+    from robolink.grading.child import Child
+
+    child = Child(answer)
+
+    def begun(trial: Trial) -> None:
+        child.watch(trial, lambda mistake: Report(trial.lines, mistake, track=trial.track()))
+
+    child.end(check(read_exercise(folder), file, language, begun=begun))

@@ -10,9 +10,9 @@ from typing import Any
 
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.grading.languages import LANGUAGES, STUDENT_FILE, Language
+from robolink.learn.checking import check_apart
 from robolink.learn.exercise import Exercise
 from robolink.learn.folder import EVERY, StudentFolder, Watch
-from robolink.learn.isolated import check_apart
 from robolink.learn.lines import findings, printed_lines
 from robolink.learn.report import Report
 from robolink.learn.words import words

@@ -64,7 +64,7 @@ def proofs(course: list[Exercise], check: Check, language: Language = "en") -> I
 
     Args:
         course: The exercises.
-        check: Runs a check: `robolink.learn.isolated.check_apart`, for example.
+        check: Runs a check: `robolink.learn.checking.check_apart`, for example.
         language: Language of the sentences, and of the given file.
     """
     with tempfile.TemporaryDirectory(prefix="robolink-learn-", ignore_cleanup_errors=True) as scratch:

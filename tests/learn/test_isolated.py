@@ -17,8 +17,8 @@ import pytest
 from robolink.cli.shared.output import say
 from robolink.grading.mistakes import Mistake
 from robolink.grading.process import MOST_PRINTED, SETTINGS, TRACE, why_no_answer
+from robolink.learn.checking import check_apart
 from robolink.learn.exercise import Exercise, chosen, read_course
-from robolink.learn.isolated import check_apart
 from robolink.learn.lines import reported
 from robolink.learn.report import Report
 from robolink.supervisor.processes.guardian import is_alive
@@ -155,9 +155,9 @@ def test_where_code_stands_that_lets_no_other_thread_run(tmp_path: Path) -> None
         SOLUTION.replace("    rclpy.spin(node)", "    print('before')\n    number = 9**9**9"), encoding="utf-8"
     )
     program = (
-        "import sys; from pathlib import Path; from robolink.grading import child; from robolink.learn import isolated;"
+        "import sys; from pathlib import Path; from robolink.grading import child; from robolink.learn import checking;"
         "child.FROZEN = 3;"
-        " isolated.serve(*map(Path, sys.argv[1:]), 'en')"
+        " checking.serve(*map(Path, sys.argv[1:]), 'en')"
     )
     words = [sys.executable, "-c", program, str(HELLO.folder), str(file), str(answer)]
     done = subprocess.run(words, capture_output=True, check=False, timeout=60.0, env={**os.environ, **SETTINGS})
@@ -196,8 +196,8 @@ def test_nothing_is_left_when_the_command_is_killed(tmp_path: Path) -> None:
     )
     file.write_text(SOLUTION.replace("    rclpy.spin(node)", waits.format(str(note))), encoding="utf-8")
     program = (
-        "import sys; from pathlib import Path; from robolink.learn import exercise, isolated;"
-        " isolated.check_apart(exercise.read_exercise(Path(sys.argv[1])), Path(sys.argv[2]), 'en')"
+        "import sys; from pathlib import Path; from robolink.learn import checking, exercise;"
+        " checking.check_apart(exercise.read_exercise(Path(sys.argv[1])), Path(sys.argv[2]), 'en')"
     )
     with subprocess.Popen([sys.executable, "-c", program, str(HELLO.folder), str(file)]) as process:
         wait_until(lambda: note.exists() and note.read_text() != "")

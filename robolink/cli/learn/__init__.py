@@ -6,12 +6,24 @@ from typing import Annotated
 
 import typer
 
-from robolink.cli.learn.completion import exercise_names
-
 app = typer.Typer(
     help="Learn by exercises that are checked in a simulated world, in English or Portuguese.",
     invoke_without_command=True,
 )
+
+
+def exercise_names() -> list[str]:
+    """Return the names of the exercises of this folder."""
+    from robolink.exceptions import RobolinkError
+    from robolink.learn.exercise import read_course
+    from robolink.learn.folder import find_folder
+
+    try:
+        found = find_folder()
+        return [each.name for each in (read_course() if found is None else found.course)]
+    except (RobolinkError, OSError):
+        return []
+
 
 Language = Annotated[str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; it is kept.")]
 Name = Annotated[str, typer.Argument(metavar="NAME", help="Its name, number or file.", autocompletion=exercise_names)]
@@ -106,10 +118,10 @@ def view(
 
     The page has the tasks, hints, reports, and the path that the robot took in the check.
     """
-    from robolink.cli.learn import page
+    from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
-    page.show(port, browser, languages.language_of(language or context.obj))
+    work.show_page(port, browser, languages.language_of(language or context.obj))
 
 
 @app.command("hint")
@@ -147,10 +159,10 @@ def new(
     language: Language = "",
 ) -> None:
     """Make an exercise of your own, for your students: a text, a given file, a check and a solution."""
-    from robolink.cli.learn import teach
+    from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
-    teach.new(name, folder, languages.spoken(language or context.obj))
+    work.new(name, folder, languages.spoken(language or context.obj))
 
 
 @app.command("prove")
@@ -160,8 +172,8 @@ def prove(
     language: Language = "",
 ) -> None:
     """Prove exercises: as given each has to fail, and its solution has to pass; the exit code is 1 if one does not."""
-    from robolink.cli.learn import teach
+    from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
-    if not teach.prove(folder, languages.spoken(language or context.obj)):
+    if not work.prove(folder, languages.spoken(language or context.obj)):
         raise typer.Exit(1)

@@ -13,6 +13,6 @@ app = typer.Typer()
 def serve(folder: Path, file: Path, language: str, answer: Path) -> None:
     """Check a program in this process, and write the report into a file."""
     from robolink.grading.languages import language_of
-    from robolink.learn.isolated import serve
+    from robolink.learn.checking import serve
 
     serve(folder, file, answer, language_of(language) or "en")

@@ -7,21 +7,27 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from robolink.cli.shared.layout import typed
+from robolink.cli.shared.layout import shown, typed
 from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
 from robolink.grading.languages import Language, default_language
-from robolink.learn.exercise import Exercise, read_course
+from robolink.learn.checking import check_apart
+from robolink.learn.exercise import SETTINGS, Exercise, read_course
 from robolink.learn.folder import StudentFolder, find_folder, folder_below, start_folder, the_folder
-from robolink.learn.isolated import check_apart
 from robolink.learn.lines import course_listed, listed, next_step, reported, task
+from robolink.learn.report import Report
 from robolink.learn.words import words
+from robolink.system.files import expanded
 from robolink.system.terminal import fit, styled
 
 _STYLES = {"✓": "32", "✗": "31", "→": "36"}
 """Colours of marks at the begin of a line."""
+
 _PLAIN = {"✓": "+", "✗": "x", "→": ">"}
 """Marks for a terminal that lacks the others."""
+
+PANEL = "learn"
+"""Name of the page's panel."""
 
 
 class NoFileError(RobolinkError, FileNotFoundError):
@@ -165,3 +171,58 @@ def _fit(line: str) -> str:
         except (UnicodeEncodeError, LookupError):
             line = line.replace(mark, plain)
     return line
+
+
+def show_page(port: int | None, browser: bool, language: Language | None) -> None:
+    """Serve the page until Ctrl-C; the terminal tells what is checked, too.
+
+    Args:
+        port: Port; None takes the default one, or the next that is free.
+        browser: True opens the page.
+        language: Language to speak from now on; None keeps it.
+    """
+    from robolink.cli.shared.page import announce, end_with_the_terminal
+    from robolink.cli.shared.session import node_of, opened
+    from robolink.extensions.optional import page
+    from robolink.learn.page import PageExercises
+
+    folder = folder_here(language)
+
+    def report_it(exercise: Exercise, report: Report) -> None:
+        say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
+        say_all(reported(exercise, report, folder.language))
+
+    exercises = PageExercises(folder, reported=report_it)
+    end_with_the_terminal()
+    with opened() as context, page(node_of(context), port=port, exercises=exercises) as server:
+        announce(server, browser, PANEL)
+        say(words(folder.language, "watching"))
+        context.graph.wait_for(lambda: not context.ok(), None)
+
+
+def new(name: str, folder: str, language: Language) -> None:
+    """Make an exercise, and say what to do with it, in a language."""
+    from robolink.learn.teaching import new_exercise
+
+    made = new_exercise(name, folder, language)
+    for each in sorted(made.iterdir()):
+        say(words(language, "made", path=shown(each)))
+    for key in ("next prove", "next start"):
+        say(words(language, key, folder=typed(made.parent)))
+
+
+def prove(folder: str, language: Language) -> bool:
+    """Prove all exercises of a folder, and say it in a language; return whether all are as they should be."""
+    from robolink.learn.teaching import FOLDER, proofs
+
+    here = Path.cwd()
+    place = expanded(folder) if folder else here if any(here.glob(f"*/{SETTINGS}")) else here / FOLDER
+    good = True
+    last = ""
+    for each in proofs(read_course(place), check_apart, language):
+        if each.exercise.name != last:
+            last = each.exercise.name
+            say(each.exercise.folder.name)
+        good = good and each.good
+        say_all([f"  {'✓' if each.good else '✗'} {each.text}"])
+    return good

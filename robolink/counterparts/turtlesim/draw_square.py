@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from robolink import Node
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
-from robolink.counterparts.turtlesim.running_turtle import DEPTH
 from robolink.counterparts.turtlesim.turtle import PERIOD, normalized
+from robolink.counterparts.turtlesim.turtlesim_node import DEPTH
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.std_srvs.srv import Empty
 from robolink.interfaces.turtlesim.msg import Pose

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from robolink import Node
-from robolink.counterparts.turtlesim.running_turtle import DEPTH
+from robolink.counterparts.turtlesim.turtlesim_node import DEPTH
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.turtlesim.msg import Pose
 

@@ -12,7 +12,7 @@ from robolink.action import ActionClient
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.control.keyboard import Keyboard, open_keyboard
-from robolink.counterparts.turtlesim.running_turtle import DEPTH
+from robolink.counterparts.turtlesim.turtlesim_node import DEPTH
 from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.turtlesim.action import RotateAbsolute

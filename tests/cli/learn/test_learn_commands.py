@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.cli.learn import work
-from robolink.cli.learn.completion import exercise_names
+from robolink.cli.learn import exercise_names, work
 from robolink.cli.main import main
 from robolink.grading.languages import Language
 from robolink.grading.mistakes import Mistake
@@ -191,7 +190,7 @@ def test_a_real_check(student: Path, capsys: Captured) -> None:
 def test_a_teacher_s_exercises(here: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     assert main(["learn", "new", "stop_early"]) == 0
     assert f"made {Path('exercises/01_stop_early/check.py')}\n" in capsys.readouterr().out
-    monkeypatch.setattr("robolink.cli.learn.teach.check_apart", lambda *_: BAD)
+    monkeypatch.setattr("robolink.cli.learn.work.check_apart", lambda *_: BAD)
     assert main(["learn", "prove"]) == 1
     out = capsys.readouterr().out
     assert out == "01_stop_early\n  ✓ given.py fails: it stands\n  ✗ solution.py fails: it stands\n"
