@@ -8,6 +8,7 @@ one class by both names; types of the workspace's own files are written out. For
 from __future__ import annotations
 
 import ast
+import functools
 import importlib
 import importlib.util
 import pkgutil
@@ -118,8 +119,11 @@ def _modules() -> dict[str, str]:
             for module, source in _below(name, room):
                 if module not in found:
                     found[module] = source
-    names = set(found)
-    return {_path(name, names): _module(name, room, names) for name, room in found.items()}
+    inside: dict[str, list[str]] = {}
+    for each in sorted(found):
+        package, _, name = each.rpartition(".")
+        inside.setdefault(package, []).append(name)
+    return {_path(name, name in inside): _module(name, room, inside.get(name, [])) for name, room in found.items()}
 
 
 def _is_message_package(room: str) -> bool:
@@ -141,19 +145,17 @@ def _is_rclpys(module: pkgutil.ModuleInfo) -> bool:
     return module.name in robolink._ROOMS or not module.ispkg
 
 
-def _path(name: str, names: set[str]) -> str:
-    is_package = any(each.startswith(f"{name}.") for each in names)
+def _path(name: str, is_package: bool) -> str:
     return f"{name.replace('.', '/')}{'/__init__' if is_package else ''}.pyi"
 
 
-def _module(name: str, room: str, names: set[str]) -> str:
-    """Return the text of a stub: each public name, from the module of robolink's that defines it."""
+def _module(name: str, room: str, inside: list[str]) -> str:
+    """Return the text of a stub: each public name, from the module of robolink's that defines it, and its modules."""
     try:
         module = importlib.import_module(room)
     except ImportError:  # it needs a library that is not installed
         return "from typing import Any\n\ndef __getattr__(name: str) -> Any: ...\n"
-    inside = sorted(each.rpartition(".")[2] for each in names if each.rpartition(".")[0] == name)
-    homes = _homes(module)
+    homes = dict(_homes(module))
     for each in inside:
         if isinstance(getattr(module, each, None), ModuleType):
             homes.pop(each, None)  # the checker finds the stub of a module that robolink has in the same file
@@ -162,6 +164,7 @@ def _module(name: str, room: str, names: set[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+@functools.cache  # several packages of ROS 2 are one of robolink's, and tests make many projects
 def _homes(module: ModuleType) -> dict[str, tuple[str, str]]:
     """Return the public names of a module, each with the module and the name that a checker finds it by."""
     tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
