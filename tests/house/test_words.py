@@ -76,6 +76,7 @@ MOST = {
 """Most old words of a room, none where it is not listed. Lower a number when `python -m tools.words` shows less."""
 
 
+@pytest.mark.slow
 def test_no_room_has_more_old_words_than_before() -> None:
     found = counts()
     assert found.total() > 0 or not MOST

@@ -33,8 +33,12 @@ COMPANIONS = [
 
 def is_ros(name: str) -> bool:
     """Return whether a module is there through robolink.compat or these tests, or is a part of it."""
-    top = name.partition(".")[0]
-    return name.startswith("robolink.compat") or top in {*packages(), *COMPANIONS}
+    return name.startswith("robolink.compat") or name.partition(".")[0] in _tops()
+
+
+@functools.cache
+def _tops() -> frozenset[str]:
+    return frozenset({*packages(), *COMPANIONS})
 
 
 def forget() -> None:

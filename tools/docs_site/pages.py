@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,6 +39,7 @@ class Page:
         return self.source.read_text(encoding="utf-8")
 
 
+@functools.cache  # each test of a page reads it
 def listing() -> dict[str, Any]:
     """Return what docs/site.yaml says."""
     read: dict[str, Any] = yaml.safe_load(LIST.read_text(encoding="utf-8"))

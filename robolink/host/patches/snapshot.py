@@ -28,7 +28,8 @@ def process_as_before() -> Iterator[None]:
         if _working_directory() != folder:
             with suppress(OSError):  # that folder is gone
                 os.chdir(folder)
-        set_environment({**dict.fromkeys(os.environ), **environment})
+        if os.environ != environment:
+            set_environment({**dict.fromkeys(os.environ), **environment})
         sys.path[:] = path
         if not any(getattr(each, "closed", False) for each in streams):  # pytest takes its own away after Ctrl-C
             sys.stdout, sys.stderr = streams
