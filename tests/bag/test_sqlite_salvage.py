@@ -49,6 +49,7 @@ def test_a_file_that_was_cut_gives_all_that_comes_before(bag: Path, whole: bytes
     assert found_in(bag, reverse=True) == found[::-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", [20, 150, 200])
 def test_a_page_in_the_middle_costs_what_was_in_it(bag: Path, whole: bytes, page: int) -> None:
     at = page * 4096

@@ -22,6 +22,7 @@ def test_from_20_random_starts_the_wall_is_kept_within_5_cm_and_nothing_is_touch
     assert max(errors) <= 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lidar", LIDARS.values(), ids=LIDARS.keys())
 def test_any_lidar_follows_a_wall_on_either_side(lidar: dict[str, Any]) -> None:
     for seed, side in enumerate(("left", "right")):

@@ -18,6 +18,7 @@ def test_from_10_random_starts_among_obstacles_it_drives_on_and_touches_nothing(
     assert min(run.cells() for run in runs) >= 20, "it gets around, and not in a circle"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lidar", LIDARS.values(), ids=LIDARS.keys())
 def test_any_lidar_wanders(lidar: dict[str, Any]) -> None:
     run = wander(3, 60.0, **lidar)

@@ -192,6 +192,7 @@ def test_it_logs_at_most_once_in_two_seconds(system: System, controller: type[No
     assert 5 <= len(system.logs) <= 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("controller", "name"), [(WallFollower, "corners"), (ReactiveController, "obstacles")])
 def test_in_the_world_itself_it_drives_and_touches_nothing(system: System, controller: type[Node], name: str) -> None:
     system.start(simulation.SimulatedWorld, parameters={"world": name})

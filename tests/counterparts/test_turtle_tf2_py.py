@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
 from robolink.testing import System
 
@@ -14,6 +16,7 @@ def distance(system: System) -> float:
     return math.dist((one.x, one.y), (two.x, two.y))
 
 
+@pytest.mark.slow
 def test_a_turtle_follows_another(system: System) -> None:
     system.launch("turtle_tf2_py turtle_tf2_demo.launch.py")
     system.expect_log("Successfully spawned turtle2")

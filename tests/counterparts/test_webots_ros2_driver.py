@@ -39,6 +39,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]
         del sys.modules[name]
 
 
+@pytest.mark.slow
 def test_a_robot_drives_and_avoids(system: System, workspace: Path) -> None:
     system.launch(make_webots_package(workspace))
     odometry, left = system.messages("/odom", Odometry), system.messages("/left_eye", Range)
@@ -108,6 +109,7 @@ def test_a_driver_says_for_whom_it_waits(system: System, workspace: Path) -> Non
     assert "waiting for the robot 'my cart': there is 'other', 'third'" in log(system)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("plugin", "text"),
     [

@@ -35,6 +35,7 @@ def test_generated_pages_are_fresh(path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_module_is_in_rooms() -> None:
     text: str = TOOL["rooms"]()
     for name in ("publisher", "inbox", "attachment", "supervisor"):

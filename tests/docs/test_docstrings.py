@@ -103,6 +103,7 @@ def _in_face(room: str) -> Iterator[Undocumented]:
         yield from undocumented_fields(module(path), frozenset(wanted))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", [*WHOLE, *FACES])
 def test_every_public_function_documents_all_its_arguments(room: str) -> None:
     assert missing(room) == []

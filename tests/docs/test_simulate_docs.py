@@ -35,6 +35,7 @@ def test_it_has_every_key() -> None:
     assert {each for each in keys if not re.search(rf"\b{each}\b(:|`)", PAGE)} == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faults", ["rough", "radio"])
 @pytest.mark.parametrize("system", ["follow", "wander", "lab", "goto", "square", "walker", "first_nodes", "talk"])
 def test_the_faults_that_come_along_fit_any_system(system: str, faults: str, tmp_path: Path) -> None:

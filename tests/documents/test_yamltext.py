@@ -73,6 +73,7 @@ def test_any_long_text_is_read_or_refused(text: str) -> None:
         parse(text + "\n" + "#" * yamltext.SHORT)
 
 
+@pytest.mark.slow
 @needs_libyaml
 def test_a_mistake_in_a_long_text_has_its_place() -> None:
     filler = "".join(f"a{number}: {number}\n" for number in range(5000))
@@ -89,6 +90,7 @@ def test_a_long_parameter_file_keeps_what_is_tagged() -> None:
     assert (tagged.value, plain.value) == ("1", 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "report"),
     [
@@ -104,6 +106,7 @@ def test_what_is_too_large_is_refused(text: str, report: str) -> None:
         yamltext.compose(text, "x")
 
 
+@pytest.mark.slow
 def test_without_libyaml_less_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(yamltext, "CParser", None)
     text = "- 1\n" * (yamltext.MAX_SLOW_NODES + 1)

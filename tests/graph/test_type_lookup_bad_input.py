@@ -142,6 +142,7 @@ FIELDS = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(FIELDS, max_size=4), st.lists(FIELDS, max_size=3))
 def test_any_description_makes_a_type_or_an_error_of_one_line(

@@ -115,6 +115,7 @@ except BaseException:
     assert (program.lives, program.state) == (2, "running")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wait", [lambda host: host.run(10.0), lambda host: host.run_until(lambda: False, 10.0)])
 def test_ctrl_c_leaves_code_behind_that_blocks(
     stage: Stage, wait: Callable[[Host], Any], monkeypatch: pytest.MonkeyPatch
@@ -178,6 +179,7 @@ threading.Thread(target=work, name="daemon", daemon=True).start()
     assert not any(each.name in ("worker", "daemon") for each in threading.enumerate())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_any_order_of_starts_and_ends_leaves_nothing_behind(tmp_path: Path, seed: int) -> None:
     logging.set_console_handler(None)

@@ -45,6 +45,7 @@ def test_every_two_encodings() -> None:
     assert done > colours
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(ENCODINGS),
     st.sampled_from(ENCODINGS),

@@ -347,6 +347,7 @@ def test_nodes_of_two_workspaces_share_no_process(home: Path, tmp_path_factory: 
         planned(home, f"nodes: [{{node: mine, process: p}}]\ninclude: [file: '{other}/configs/its.yaml']")
 
 
+@pytest.mark.slow
 def test_a_large_system_is_planned_without_comparing_each_node_with_all_others(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

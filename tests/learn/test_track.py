@@ -55,6 +55,7 @@ def test_a_long_run_is_thinned(whole: Report, monkeypatch: pytest.MonkeyPatch, t
     assert thin.contacts[0].at == pytest.approx(whole.track.contacts[0].at, abs=thin.period)
 
 
+@pytest.mark.slow
 def test_two_robots_and_none(tmp_path: Path) -> None:
     exercise = chosen(COURSE, "two_robots")
     report = check(exercise, SOLUTIONS / exercise.file)

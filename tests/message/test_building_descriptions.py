@@ -245,6 +245,7 @@ def descriptions(depth: int = 1) -> st.SearchStrategy[TypeDescription]:
     return st.builds(TypeDescription, TYPE_NAMES, fields, referenced)
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(descriptions())
 def test_any_description_makes_a_class_or_is_refused(description: TypeDescription) -> None:

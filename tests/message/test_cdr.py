@@ -222,12 +222,14 @@ def test_every_type_agrees_with_rosbags() -> None:
             check_against_the_oracle(message)
 
 
+@pytest.mark.slow
 @given(message=messages(Everything))
 @settings(RELAXED, max_examples=50)
 def test_everything_agrees_with_rosbags(message: Everything) -> None:
     check_against_the_oracle(message)
 
 
+@pytest.mark.slow
 @given(arrays=messages(ros.Arrays), bounded=messages(ros.BoundedSequences), unbounded=messages(ros.UnboundedSequences))
 @settings(RELAXED, max_examples=10)
 def test_sequences_of_sequences_agree_with_rosbags(arrays: Any, bounded: Any, unbounded: Any) -> None:

@@ -113,6 +113,7 @@ def test_cut_off_anywhere(sample: Any) -> None:
         assert str(error).startswith(f"{type_name(type(sample))}: ")
 
 
+@pytest.mark.slow
 def test_every_type_cut_off_anywhere() -> None:
     for name in names("msg"):
         cls: Any = find(name)

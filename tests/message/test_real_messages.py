@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from robolink.message import decode, encode
 from tests.support.real_messages import KEPT, made, misread, our_class, plain, recorded
 
@@ -13,11 +15,13 @@ def test_all_types_are_recorded() -> None:
     assert {len(data) for data in RECORDED.values()} == {KEPT}
 
 
+@pytest.mark.slow
 def test_what_a_real_ros_wrote_is_read_field_by_field() -> None:
     wrong = {name: misread(name, data) for name, data in RECORDED.items()}
     assert {name: numbers for name, numbers in wrong.items() if numbers} == {}
 
 
+@pytest.mark.slow
 def test_what_robolink_writes_are_the_same_bytes() -> None:
     """But for what Fast CDR leaves between and behind the fields, where ours are zeros and none."""
     for name, data in RECORDED.items():

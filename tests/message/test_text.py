@@ -50,6 +50,7 @@ def parts(cls: Any) -> Iterator[Any]:
             yield cls.__dict__[name]
 
 
+@pytest.mark.slow
 def test_every_standard_type_is_built_of_its_text() -> None:
     for cls in STANDARD:
         is_built_of_its_text(cls)

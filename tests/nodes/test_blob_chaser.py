@@ -134,6 +134,7 @@ def test_it_finds_all_three_and_stops_before_each(seed: int, tmp_path: Path) -> 
         assert system.robot().contacts == 0
 
 
+@pytest.mark.slow
 def test_the_launch_file_of_the_blobs_finds_one(system: System) -> None:
     system.launch("blobs")
     system.expect("/found", within=40.0)

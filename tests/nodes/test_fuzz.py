@@ -16,6 +16,7 @@ MESSAGES = 40
 """Messages and calls to each program."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fuzzed", list(programs()), ids=lambda fuzzed: Path(fuzzed.name).stem)
 def test_a_program_survives_hostile_messages(fuzzed: Fuzzed) -> None:
     outcome = attacked(fuzzed, MESSAGES, seed=1)

@@ -79,6 +79,7 @@ def is_at(system: System, x: float, y: float, theta: float) -> bool:
     return math.hypot(pose.x - x, pose.y - y) < 0.05 and abs(math.remainder(pose.theta - theta, math.tau)) < 0.1
 
 
+@pytest.mark.slow
 def test_goals_are_reached_one_after_the_other_with_feedback(room: System) -> None:
     room.start(goto.Goto)
     client = Client(room)
@@ -161,6 +162,7 @@ def test_rviz_sends_goals_by_a_topic(room: System) -> None:
     assert is_at(room, 4.0, 3.0, 0.0)
 
 
+@pytest.mark.slow
 def test_a_goal_of_another_frame_needs_a_transform(room: System) -> None:
     room.start(goto.Goto)
     client = Client(room)

@@ -168,6 +168,7 @@ def test_it_keeps_to_the_line_for_two_minutes(seed: int, tmp_path: Path) -> None
     assert sum(itertools.starmap(math.dist, itertools.pairwise(way))) > 20.0
 
 
+@pytest.mark.slow
 def test_the_launch_file_of_the_track_follows_its_line(system: System) -> None:
     system.launch("track")
     system.run(20.0)

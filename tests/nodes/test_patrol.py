@@ -133,6 +133,7 @@ def test_waypoints_can_be_changed_on_the_way_but_not_to_nonsense(system: System)
         system.start(patrol.Patrol, parameters={"waypoints": [1.0, 2.0]})
 
 
+@pytest.mark.slow
 def test_a_server_that_comes_late_and_goes_away_is_waited_for(system: System) -> None:
     add_world(system, "empty_room")
     node = system.start(patrol.Patrol, parameters={"waypoints": "4,3 4,4", "loop": False, "pause": 0.0})

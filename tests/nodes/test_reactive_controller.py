@@ -72,6 +72,7 @@ def test_when_scans_come_seldom_it_slows_down_earlier_and_turns_slower() -> None
 CORNERS = {"corners": Pose(6.5, 0.5, -0.8), "empty_room": Pose(5.7, 5.7, 0.8), "obstacles": Pose(9.5, 7.5, 0.8)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "pose"), CORNERS.items())
 def test_wandering_comes_out_of_corners(name: str, pose: Pose) -> None:
     run = Run(world(name, pose), Reactive(), 60.0)

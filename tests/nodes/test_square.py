@@ -87,6 +87,7 @@ SQUARES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("room", "parameters"), SQUARES.values(), ids=SQUARES)
 def test_it_ends_within_a_centimetre_of_its_start(
     system: System, room: dict[str, Any], parameters: dict[str, Any], tmp_path: Path
@@ -117,6 +118,7 @@ def test_it_gives_up_before_a_wall(system: System, tmp_path: Path) -> None:
     assert said(system, "gave up at (3.5") == 1
 
 
+@pytest.mark.slow
 def test_it_waits_for_odometry_and_ignores_what_is_none(system: System) -> None:
     node = system.start(square.Square)
     nonsense = Odometry()
@@ -130,6 +132,7 @@ def test_it_waits_for_odometry_and_ignores_what_is_none(system: System) -> None:
     assert system.result(node.done, PATIENCE) == 0
 
 
+@pytest.mark.slow
 def test_another_shape_is_that_of_the_next_square(system: System, tmp_path: Path) -> None:
     path = tmp_path / "room.yaml"
     path.write_text(ROOM.format(dt=0.01, rate=50, theta=0.0))

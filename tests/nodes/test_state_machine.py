@@ -143,6 +143,7 @@ def test_at_the_start_it_waits_for_the_sensors(system: System, node: Any) -> Non
     assert lines(system) == ["no image on /camera/image_raw for 5 s: the robot stands until one comes"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("image", [each for each, _ in BAD.values()], ids=BAD)
 def test_bad_images_are_none(system: System, node: Any, image: Image) -> None:
     senses = system.start(Senses)

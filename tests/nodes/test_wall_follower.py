@@ -67,6 +67,7 @@ def test_the_left_is_the_mirror_image_of_the_right(centimetres: list[int]) -> No
     assert (left.linear.x, left.angular.z) == pytest.approx((right.linear.x, -right.angular.z), abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_it_goes_round_the_cornered_room_at_half_a_metre(side: str) -> None:
     run = Run(world("corners"), Follower(side=side), 120.0)
@@ -122,6 +123,7 @@ def test_it_gains_speed_gently_and_is_slower_when_scans_come_seldom() -> None:
     assert follow(scan, follower.Memory("right", 0.3, 0.0), 1.0).twist.linear.x == pytest.approx(0.125)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pose", [Pose(0.4, 0.4, 2.0), Pose(3.0, 4.5, -3.0), Pose(2.0, 3.2, 0.0), Pose(6.6, 3.1, 1.0)])
 def test_it_finds_a_wall_from_anywhere(pose: Pose) -> None:
     run = Run(world("corners", pose), Follower(distance=0.4), 60.0)

@@ -320,6 +320,7 @@ def expected(model: Model, step: str, name: str, value: Any) -> bool:
     return model.undeclare(name) if step == "undeclare" else model.set(name, value)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(STEPS)
 def test_node_and_services_agree_with_a_dict(steps: list[tuple[str, str, Any]]) -> None:

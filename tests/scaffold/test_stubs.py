@@ -147,6 +147,7 @@ def test_pyright_finds_both_mistakes_and_nothing_else(workspace: Path) -> None:
     assert places == expected, done.stdout
 
 
+@pytest.mark.slow
 def test_stubs_are_written_anew_and_settings_stay(workspace: Path, tmp_path: Path) -> None:
     folder = tmp_path / "workspace"
     shutil.copytree(workspace, folder)

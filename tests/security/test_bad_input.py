@@ -95,6 +95,7 @@ def test_permissions_that_no_session_would_read_are_not_written(keys: Path, caps
     assert "the permissions of '/robot' have 1," in line
 
 
+@pytest.mark.slow
 def test_includes_of_includes_end(keys: Path, capsys: pytest.CaptureFixture[str]) -> None:
     space = 'xmlns:xi="http://www.w3.org/2001/XInclude"'
     many = '<xi:include href="{}.xml"/>'

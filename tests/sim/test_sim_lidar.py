@@ -116,6 +116,7 @@ def closed(corners: Array) -> Array:
     return np.concatenate((corners, np.roll(corners, -1, axis=0)), axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("largest", [0.0, 3.0, 1e5])
 def test_no_beam_of_a_million_leaks_through_a_corner(largest: float) -> None:
     """1,008,000 beams, each aimed at its own corner of a crooked room, near the origin and far from it."""

@@ -156,6 +156,7 @@ def test_a_crate_turns_about_its_middle_and_not_its_origin() -> None:
     assert off.robots["r"].pose.x > 3.0
 
 
+@pytest.mark.slow
 def test_ten_thousand_pieces_of_wall_hold_a_robot() -> None:
     rim = [(0.1 * math.cos(a), 0.1 * math.sin(a)) for a in (math.tau * k / 10_000 for k in range(10_001))]
     pieces = [(30 * x, 30 * y) for k in range(10_000) for x, y in (rim[k], rim[k + 1])]

@@ -128,6 +128,7 @@ def test_bumpers_feel_their_own_sectors(theta: float, touched: set[str]) -> None
     assert found == touched
 
 
+@pytest.mark.slow
 @example(segments=[(2.0, 2.0, 5.0, 5.5)], circles=[], fov=152.0, theta=0.0)
 @given(
     st.lists(st.tuples(*[st.floats(-6, 6)] * 4), max_size=6),
@@ -176,6 +177,7 @@ def test_a_range_finder_sees_the_nearest_corner_and_its_limits() -> None:
     assert values(world(f"pose: [4, 2.5], {sonar}", post), 1, "sonar") == pytest.approx([0.7])
 
 
+@pytest.mark.slow
 def test_a_range_finders_noise_has_its_size() -> None:
     sonar = "sensors: [{range_finder: sonar, rate: 100, noise: 0.02}]"
     read = np.array(values(world(f"pose: [6, 2.5], {sonar}"), 2000, "sonar"))
@@ -209,6 +211,7 @@ def noisy_odometry(v: float, w: float, seconds: float = 600.0) -> World:
     return made
 
 
+@pytest.mark.slow
 def test_noise_of_odometry_has_its_size_and_leaves_the_truth_alone() -> None:
     robot = noisy_odometry(0.1, 0.0).robots["r"]
     assert robot.pose.x == pytest.approx(0.3 * 600, abs=0.01)

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -117,6 +118,7 @@ def as_yaml(content: Any) -> str:
     return json.dumps(content).replace("NaN", ".nan").replace("Infinity", ".inf")
 
 
+@pytest.mark.slow
 @given(FILES | ANYTHING)
 @settings(max_examples=200, deadline=None)
 def test_a_file_of_wrong_values_raises_nothing_but_a_document_error(content: Any) -> None:
@@ -168,6 +170,7 @@ GOOD_FILES = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @given(GOOD_FILES)
 @settings(max_examples=80, deadline=None)
 def test_a_file_that_is_not_refused_can_be_simulated(content: Any) -> None:

@@ -113,6 +113,7 @@ class Circler(Node):
 '''
 
 
+@pytest.mark.slow
 def test_a_robot_that_circles_on_the_spot_is_told_from_one_that_gets_on(folder: Path) -> None:
     (folder / "nodes" / "circler.py").write_text(CIRCLER)
     world = "{node: world, parameters: {world: empty_room}}"

@@ -22,6 +22,7 @@ from tests.support.players import counting
 pytest_plugins = ("pytester",)
 
 
+@pytest.mark.slow
 def test_a_replay_gives_the_same_commands_byte_for_byte(tmp_path: Path) -> None:
     with System(seed=1) as system:
         system.launch("follow")

@@ -67,6 +67,7 @@ def seed_of(result: pytest.RunResult) -> str:
     return found[1]
 
 
+@pytest.mark.slow
 def test_the_seed_is_the_tests_own_and_the_same_each_time_or_the_one_asked_for(project: pytest.Pytester) -> None:
     assert seed_of(run(project, FAILS)) == seed_of(run(project, FAILS))
     assert seed_of(run(project, FAILS)) != seed_of(run(project, FAILS.replace("fails", "breaks")))
@@ -201,6 +202,7 @@ def test_skips(system):
     result.stdout.fnmatch_lines_random(["XFAIL test_it.py::test_it*known", "SKIPPED *test_it.py:*: not today"])
 
 
+@pytest.mark.slow
 def test_a_node_that_breaks_last_breaks_the_test(project: pytest.Pytester) -> None:
     text = """
 class Rude(Counter):
@@ -241,6 +243,7 @@ def test_skips(system):
     result.stdout.fnmatch_lines(["E *ExpectationError: {topic: cuont, loss: 0.5} met nothing: no topic 'cuont' was*"])
 
 
+@pytest.mark.slow
 def test_what_lies_between_the_test_and_its_nodes_is_left_out(project: pytest.Pytester) -> None:
     text = """
 class Fragile(Counter):

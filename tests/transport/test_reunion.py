@@ -194,6 +194,7 @@ def test_latched_values_of_others_come_once(pair: Pair) -> None:
     assert ear.next() == b"2"
 
 
+@pytest.mark.slow
 def test_what_is_published_and_declared_meanwhile_is_neither_lost_nor_doubled(pair: Pair) -> None:
     outlet, ears = pair.here.advertise(CHATTER, KEEP_ALL), [Ear(each, qos=KEEP_ALL) for each in (pair.here, pair.there)]
     reach(outlet, *ears)

@@ -87,6 +87,7 @@ attachments = blobs(ATTACHMENT, ATTACHMENT[:-1], ATTACHMENT + b"\x00")
 tokens = fields(LAB) | st.text().map("@ros2_lv/0/".__add__)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     announced=st.lists(tokens, max_size=5),

@@ -160,6 +160,7 @@ MANY_FILES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", MANY_FILES)
 def test_a_file_that_asks_for_all_files_again_and_again_takes_no_time(package: Path, what: str) -> None:
     (package / "many").mkdir()

@@ -222,6 +222,7 @@ def test_messages_too_deep_within_each_other_are_refused(write: Write) -> None:
     assert find(f"zoo_msgs/M{2 * DEEPEST}")
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.text("ABM[]<=3 #'.-\n/float64boolstringx_", max_size=30) | st.binary(max_size=40), max_size=3))
 def test_any_files_make_types_or_errors_with_a_place(tmp_path: Path, files: list[str | bytes]) -> None:

@@ -97,6 +97,7 @@ def test_a_rotation_about_z(theta: float) -> None:
     assert math.hypot(turned.z, turned.w) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_odometry_is_as_sure_as_it_may_be() -> None:
     """Of many robots that drive the same arc, the errors are as great as each says, and go the same way."""
     noise, many = OdomNoise(v=0.3, w=0.3), 150

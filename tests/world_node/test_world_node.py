@@ -184,6 +184,7 @@ def life(controller: type[Node], world: str) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("controller", "world"), [(follower.WallFollower, "corners"), (reactive.ReactiveController, "obstacles")]
 )

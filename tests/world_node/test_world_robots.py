@@ -298,10 +298,12 @@ def life(world: str) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_a_life_in_the_lab_is_the_same_twice() -> None:
     assert life("lab") == life("lab")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("world", [each.stem for each in list_worlds() if ROOT in each.parents])
 def test_every_world_that_comes_with_robolink_runs(system: System, world: str) -> None:
     node = system.start(simulation.SimulatedWorld, parameters={"world": world})

@@ -254,6 +254,7 @@ REQUESTS = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(REQUESTS, max_size=12))
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_no_request_ends_the_node(hall: str, requests: list[dict[str, Any]]) -> None:

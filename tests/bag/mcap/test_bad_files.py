@@ -49,6 +49,7 @@ def places(data: bytes, kind: int) -> list[tuple[int, int]]:
     return [(8 + start, 8 + end) for opcode, start, end in records(data[8:-8]) if opcode == kind]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["", "zstd", "lz4"])
 def test_a_file_that_is_cut_anywhere_has_what_is_before(tmp_path: Path, name: str) -> None:
     path = tmp_path / "cut.mcap"

@@ -151,6 +151,7 @@ def test_zeros_are_no_records() -> None:
         list(records(bytes(100)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("indexed", [True, False])
 @pytest.mark.parametrize("reverse", [True, False])
 def test_chunks_of_one_time_are_read_in_time_that_grows_with_their_number(
@@ -163,6 +164,7 @@ def test_chunks_of_one_time_are_read_in_time_that_grows_with_their_number(
     assert time.process_time() - begun < 1.5
 
 
+@pytest.mark.slow
 def test_broken_chunks_are_told_in_time_that_grows_with_their_number(tmp_path: Path) -> None:
     path = made(tmp_path / "a.mcap", [Chunk(b"", 9)] * 4000, indexed=True)
     begun = time.process_time()
@@ -174,6 +176,7 @@ def test_broken_chunks_are_told_in_time_that_grows_with_their_number(tmp_path: P
     assert time.process_time() - begun < 1.5
 
 
+@pytest.mark.slow
 def test_sixty_five_thousand_channels_are_opened_in_two_seconds(tmp_path: Path) -> None:
     path = made(tmp_path / "a.mcap", [Chunk(message())], indexed=True, channels=65_000)
     begun = time.process_time()

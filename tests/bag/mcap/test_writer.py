@@ -81,6 +81,7 @@ def test_the_summary_tells_what_is_in_it(path: Path) -> None:
         assert (own.profile, own.library, own.is_whole) == ("ros2", "probe", True)
 
 
+@pytest.mark.slow
 def test_a_message_larger_than_a_chunk_has_one_of_its_own(path: Path) -> None:
     with Writer(path, chunk_size=10_000) as writer:
         (channel,) = add_channels(writer, 1)

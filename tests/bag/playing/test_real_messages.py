@@ -6,6 +6,8 @@ import functools
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from robolink import Node
 from robolink.bag.definition import message_definition
 from robolink.bag.playing import Player
@@ -33,6 +35,7 @@ def topic(name: str) -> str:
     return f"/{name.replace('/msg/', '/').lower()}"
 
 
+@pytest.mark.slow
 def test_all_messages_arrive(system: System, tmp_path: Path) -> None:
     heard: dict[str, list[Any]] = {name: [] for name in STANDARD}
     for name in STANDARD:

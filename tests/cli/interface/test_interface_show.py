@@ -153,6 +153,7 @@ def _sources_read_once() -> Iterator[None]:
         yield
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_sources_read_once")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_standard_type_can_be_shown(kind: str) -> None:
@@ -163,6 +164,7 @@ def test_every_standard_type_can_be_shown(kind: str) -> None:
         assert prototype(cls)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_sources_read_once")
 def test_shown_without_comments_a_type_still_means_the_same() -> None:
     for name in names("msg"):

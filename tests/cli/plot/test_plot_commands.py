@@ -144,6 +144,7 @@ def test_several_ways_are_in_one_picture_and_a_silent_topic_does_no_harm(
     assert len(drawn[0].get_legend().get_texts()) == 2
 
 
+@pytest.mark.slow
 def test_the_last_path_is_drawn(node: Node, tmp_path: Path, drawn: list[Any]) -> None:
     latch(node, "plan", PathMessage(poses=[pose(9, 9)]), PathMessage(poses=[pose(0, 0), pose(1, 0), pose(1, 2)]))
     with spinning(node):
@@ -151,6 +152,7 @@ def test_the_last_path_is_drawn(node: Node, tmp_path: Path, drawn: list[Any]) ->
     assert drawn[0].lines[0].get_xydata().tolist() == [[0, 0], [1, 0], [1, 2]]
 
 
+@pytest.mark.slow
 def test_the_simulated_world_is_drawn_below(node: Node, tmp_path: Path, drawn: list[Any]) -> None:
     world = Node("world", context=node.context, parameter_overrides=[Parameter("world", value="corners")])
     world.declare_parameter("world", "")
@@ -345,6 +347,7 @@ def lap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "lap"
 
 
+@pytest.mark.slow
 def test_a_bags_trajectories_are_drawn(lap: Path, drawn: list[Any], capsys: Captured) -> None:
     assert main(["plot", "odom", "--bag", "lap", "--out", "way.png"]) == 0
     assert [each.get_label() for each in drawn[-1].lines[::3]] == ["/odom: 4.00 m", "/arm/goal: 8.00 m"]

@@ -69,6 +69,7 @@ def test_nothing_serves_the_action_and_nothing_happens(system: System) -> None:
     assert log(system) == []
 
 
+@pytest.mark.slow
 def test_a_square_is_drawn(system: System) -> None:
     system.start(TurtleSim)
     square = system.start(DrawSquare)

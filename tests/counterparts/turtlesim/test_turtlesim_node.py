@@ -144,6 +144,7 @@ def test_who_cannot_be_spawned_is_told_in_the_log(system: System, turtlesim: Any
     assert list(turtlesim.turtles) == ["turtle1"]
 
 
+@pytest.mark.slow
 def test_nonsense_moves_nobody_out_of_the_window(system: System, turtlesim: Any) -> None:
     nan, most = math.nan, 3.4e38
     assert spawn(system, "", nan, -most, math.inf) == "turtle2"

@@ -145,6 +145,7 @@ def test_a_file_of_before_2018_is_told_what_replaces_it(package: Path) -> None:
         read_system(path, {})
 
 
+@pytest.mark.slow
 def test_what_never_ends(package: Path) -> None:
     endless = """
     def again(context):

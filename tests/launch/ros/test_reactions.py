@@ -184,6 +184,7 @@ def test_a_mistake_in_a_handler_ends_the_launch(package: Path, reaction: str, li
     assert end == End(f"{package}/launch/bot.launch.py:{FIRST + line}: {text}", 1)
 
 
+@pytest.mark.slow
 def test_events_that_follow_from_each_other_without_end(package: Path) -> None:
     director = directed(
         package,

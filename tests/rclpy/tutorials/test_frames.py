@@ -78,6 +78,7 @@ def test_a_static_frame_with_wrong_words(
     assert demo
 
 
+@pytest.mark.slow
 def test_a_turtle_follows_another(demo: TutorialWorkspace, system: System) -> None:
     system.launch("learning_tf2_py turtle_tf2_demo_launch.py")
     system.expect_log("Successfully spawned turtle2")
@@ -91,6 +92,7 @@ def test_a_turtle_follows_another(demo: TutorialWorkspace, system: System) -> No
     assert demo
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["fixed", "dynamic"])
 def test_a_frame_is_added(demo: TutorialWorkspace, system: System, kind: str) -> None:
     system.launch(f"learning_tf2_py turtle_tf2_{kind}_frame_demo_launch.py")
@@ -104,6 +106,7 @@ def test_a_frame_is_added(demo: TutorialWorkspace, system: System, kind: str) ->
     assert demo
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("lookup", "follows"), [(AT_ONCE, False), (PATIENTLY, True), (FIVE_SECONDS_AGO, True)])
 def test_time_travel(demo: TutorialWorkspace, system: System, lookup: str, follows: bool) -> None:
     edit(demo.folder / "src/learning_tf2_py/learning_tf2_py/turtle_tf2_listener.py", (LOOK_UP, lookup))

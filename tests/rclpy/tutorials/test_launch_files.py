@@ -48,6 +48,7 @@ def test_arguments_of_the_substitutions(tutorial: TutorialWorkspace) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_large_project(tutorial: TutorialWorkspace, system: System, monkeypatch: pytest.MonkeyPatch) -> None:
     tutorial.create("learning_tf2_py", *TF2, data="launch")
     monkeypatch.setenv("USER", "me")

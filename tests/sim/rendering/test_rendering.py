@@ -86,6 +86,7 @@ def test_depths_are_exact_to_a_tenth_of_a_millimetre() -> None:
     assert np.abs(found - exact).max() < 1e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "side"), [(12, 3.0), (40, 1.0), (700, 0.5)])
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_seen_is_what_each_ray_meets_first(count: int, side: float, seed: int) -> None:

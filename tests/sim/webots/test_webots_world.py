@@ -340,6 +340,7 @@ WORLDS = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=100)
 @given(st.lists(WORLDS, max_size=4).map("\n".join))
 def test_any_world_gives_a_valid_description_or_a_document_error(text: str) -> None:
