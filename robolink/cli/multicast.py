@@ -15,7 +15,7 @@ from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
 from robolink.system import clocks
 
-app = typer.Typer(no_args_is_help=True, help="Try whether multicast passes between machines.")
+app = typer.Typer(no_args_is_help=True, help="Send or receive a multicast packet, to test the network.")
 
 GROUP, PORT = "225.0.0.1", 49150
 """Address and port that ros2's commands have, too."""
@@ -37,17 +37,19 @@ def _checked_group(group: str) -> str:
     return group
 
 
-Group = Annotated[str, typer.Option("--group", metavar="ADDRESS", help="The group.", callback=_checked_group)]
-Port = Annotated[int, typer.Option("--port", min=1, max=65535, help="The port.")]
+Group = Annotated[
+    str, typer.Option("--group", metavar="ADDRESS", help="Multicast group address.", callback=_checked_group)
+]
+Port = Annotated[int, typer.Option("--port", min=1, max=65535, help="Multicast port.")]
 
 
 @app.command("send")
 def send(
     group: Group = GROUP,
     port: Port = PORT,
-    ttl: Annotated[int, typer.Option("--ttl", min=0, max=255, help="Routers that it may pass, 1 for none.")] = 1,
+    ttl: Annotated[int, typer.Option("--ttl", min=0, max=255, help="Multicast TTL: 1 stays on this network.")] = 1,
 ) -> None:
-    """Send one datagram to a group."""
+    """Send one UDP multicast packet."""
     say("Sending one UDP multicast datagram...")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
@@ -58,9 +60,9 @@ def send(
 def receive(
     group: Group = GROUP,
     port: Port = PORT,
-    timeout: Annotated[float, seconds("--timeout", "Wait at most so long; 0 waits for ever.")] = 0.0,
+    timeout: Annotated[float, seconds("--timeout", "Longest time to wait, in seconds; 0 for no limit.")] = 0.0,
 ) -> None:
-    """Wait for one datagram to a group, and show it."""
+    """Wait for one UDP multicast packet, and print it."""
     say("Waiting for UDP multicast datagram...")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
         receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -13,16 +13,16 @@ from robolink.cli.shared.output import say
 if TYPE_CHECKING:
     from robolink.scaffold import Made
 
-app = typer.Typer(no_args_is_help=True, help="Make a project, a node or a world to begin with, and stubs for editors.")
+app = typer.Typer(no_args_is_help=True, help="Create a project, a node, a world, or stubs for editors.")
 
-Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to put it.")]
+Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Workspace to write into.")]
 
 
 @app.command("project")
 def new_project(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, or the path of its folder.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the project, or path of its folder.")],
 ) -> None:
-    """Make a folder that runs and tests at once: a node, a world, a launch file, a test, CI, and stubs for editors."""
+    """Create a project that runs at once: a node, a world, a launch file, a test, CI, and stubs for editors."""
     from robolink.scaffold import new_project
     from robolink.scaffold.stubs import write_stubs
 
@@ -36,10 +36,10 @@ def new_project(
 
 @app.command("node")
 def new_node(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as wall_watcher.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the node, such as wall_watcher.")],
     workspace: Workspace = "",
 ) -> None:
-    """Make a node and its test, in nodes/ and tests/; without a workspace, one file in this folder."""
+    """Create a node and its test, in nodes/ and tests/; outside of a workspace, a file in this folder."""
     from robolink.scaffold import new_node
 
     made = new_node(name, workspace=workspace or None)
@@ -51,9 +51,10 @@ def new_node(
 
 @app.command("world")
 def new_world(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as kitchen.")], workspace: Workspace = ""
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the world, such as kitchen.")],
+    workspace: Workspace = "",
 ) -> None:
-    """Make a world to simulate, in configs/worlds/; without a workspace, one file in this folder."""
+    """Create a world file, in configs/worlds/; outside of a workspace, a file in this folder."""
     from robolink.scaffold import new_world
 
     made = new_world(name, workspace=workspace or None)
@@ -64,7 +65,7 @@ def new_world(
 
 @app.command("stubs")
 def new_stubs(workspace: Workspace = "") -> None:
-    """Make typings/, by which editors and type checkers know rclpy, the message packages and your own types."""
+    """Create typings/, with which editors and type checkers know rclpy, the message packages and your own types."""
     from robolink.scaffold.stubs import settings_to_change, write_stubs
     from robolink.workspace import user_workspace
 

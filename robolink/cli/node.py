@@ -14,21 +14,21 @@ if TYPE_CHECKING:
     from robolink.graph.graph import Token
     from robolink.wire import EndpointToken
 
-app = typer.Typer(no_args_is_help=True, help="See which nodes there are, and what each of them does.")
+app = typer.Typer(no_args_is_help=True, help="List nodes, and show the topics, services and actions of a node.")
 
 
 @app.callback()
 def _noun() -> None:
-    """See which nodes there are, and what each of them does."""
+    """List nodes, and show the topics, services and actions of a node."""
 
 
 @app.command("list")
 def list_nodes(
-    show_all: Annotated[bool, typer.Option("--all", "-a", help="Also those that begin with _.")] = False,
-    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Only say how many there are.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON array.")] = False,
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="Include hidden names, which begin with _.")] = False,
+    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Print only the number.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON array.")] = False,
 ) -> None:
-    """List the nodes by their full names."""
+    """List the running nodes."""
     from robolink.cli.shared.graph import nodes
     from robolink.cli.shared.output import say, say_json
     from robolink.cli.shared.session import looking
@@ -50,11 +50,11 @@ def list_nodes(
 def info(
     node: Annotated[str, typer.Argument(help="Name of the node, such as /robot.", autocompletion=complete.node_names)],
     hidden: Annotated[
-        bool, typer.Option("--include-hidden", help="Also topics, services and actions that begin with _.")
+        bool, typer.Option("--include-hidden", help="Include hidden topics, services and actions.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object.")] = False,
 ) -> None:
-    """Show what a node publishes, subscribes to, serves and calls."""
+    """Show the publishers, subscriptions, services and actions of a node."""
     from robolink.cli.shared.graph import absolute, sections_of, tokens
     from robolink.cli.shared.output import say, say_json, tell
     from robolink.cli.shared.session import looking
@@ -77,12 +77,12 @@ def info(
 
 @app.command("graph")
 def graph(
-    format_: Annotated[str, choice("--format", GRAPH_FORMATS, "How to draw it")] = GRAPH_FORMATS[0],
+    format_: Annotated[str, choice("--format", GRAPH_FORMATS, "Format of the graph")] = GRAPH_FORMATS[0],
     hidden: Annotated[
-        bool, typer.Option("--include-hidden", help="Also nodes, topics, services and actions that begin with _.")
+        bool, typer.Option("--include-hidden", help="Include hidden nodes, topics, services and actions.")
     ] = False,
 ) -> None:
-    """Draw the nodes that run, and the topics, services and actions between them, as text."""
+    """Print a graph of the running nodes and the topics, services and actions between them."""
     from robolink.cli.shared.graph import is_hidden, tokens
     from robolink.cli.shared.output import say
     from robolink.cli.shared.session import looking

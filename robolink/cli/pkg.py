@@ -17,34 +17,43 @@ if TYPE_CHECKING:
     from robolink.scaffold import NewPackage
     from robolink.workspace import NodeSource
 
-app = typer.Typer(no_args_is_help=True, help="Make packages, and see which there are and what they have.")
+app = typer.Typer(no_args_is_help=True, help="Create packages, list them and their executables.")
 
-Package = Annotated[str, typer.Argument(metavar="PACKAGE", help="Its name.", autocompletion=complete.package_names)]
+Package = Annotated[
+    str, typer.Argument(metavar="PACKAGE", help="Name of the package.", autocompletion=complete.package_names)
+]
 
 
 @app.command("create", cls=ListedOptions)
 def create(
-    package_name: Annotated[str, typer.Argument(metavar="PACKAGE", help="Its name, such as my_robot.")],
-    build_type: Annotated[
-        str, choice("--build-type", ["ament_cmake", "ament_python"], "What builds it elsewhere")
-    ] = "ament_cmake",
-    node_name: Annotated[str, typer.Option("--node-name", metavar="NAME", help="A first program, in Python.")] = "",
-    library_name: Annotated[str, typer.Option("--library-name", metavar="NAME", help="A first library.")] = "",
+    package_name: Annotated[str, typer.Argument(metavar="PACKAGE", help="Name of the package, such as my_robot.")],
+    build_type: Annotated[str, choice("--build-type", ["ament_cmake", "ament_python"], "Build type")] = "ament_cmake",
+    node_name: Annotated[
+        str, typer.Option("--node-name", metavar="NAME", help="Name of a first executable, in Python.")
+    ] = "",
+    library_name: Annotated[str, typer.Option("--library-name", metavar="NAME", help="Name of a first library.")] = "",
     dependencies: Annotated[
-        list[str] | None, typer.Option("--dependencies", metavar="PACKAGE...", help="Packages that it needs.")
+        list[str] | None, typer.Option("--dependencies", metavar="PACKAGE...", help="Dependencies of the package.")
     ] = None,
-    description: Annotated[str, typer.Option("--description", help="For package.xml.")] = "TODO: Package description",
+    description: Annotated[
+        str, typer.Option("--description", help="Description for package.xml.")
+    ] = "TODO: Package description",
     license_: Annotated[
-        str, typer.Option("--license", metavar="ID", help="Such as MIT, with its file LICENSE; '?' lists them.")
+        str,
+        typer.Option("--license", metavar="ID", help="License, such as MIT, with its file LICENSE; '?' lists them."),
     ] = "TODO: License declaration",
-    maintainer_name: Annotated[str, typer.Option("--maintainer-name", help="For package.xml.")] = "",
-    maintainer_email: Annotated[str, typer.Option("--maintainer-email", help="For package.xml.")] = "",
-    package_format: Annotated[str, choice("--package-format", ["2", "3"], "Of package.xml")] = "3",
+    maintainer_name: Annotated[
+        str, typer.Option("--maintainer-name", help="Name of the maintainer, for package.xml.")
+    ] = "",
+    maintainer_email: Annotated[
+        str, typer.Option("--maintainer-email", help="Email address of the maintainer, for package.xml.")
+    ] = "",
+    package_format: Annotated[str, choice("--package-format", ["2", "3"], "Format of package.xml")] = "3",
     destination: Annotated[
-        Path, typer.Option("--destination-directory", metavar="FOLDER", help="Where to make its folder.")
+        Path, typer.Option("--destination-directory", metavar="FOLDER", help="Folder to create the package in.")
     ] = Path(),
 ) -> None:
-    """Make a package that runs here at once, and that colcon builds: in the folder src/ of a workspace, say."""
+    """Create a package, which runs here at once and which colcon builds."""
     from robolink.scaffold import NewPackage, known_licenses, new_package
 
     if license_ == "?":
@@ -103,7 +112,7 @@ def _user() -> str:
 
 @app.command("list")
 def list_packages() -> None:
-    """List the packages: the workspace's, those that come with robolink, those that were installed."""
+    """List the packages of the workspace, of robolink, and those that are installed."""
     from robolink.companions.ament_index import get_packages_with_prefixes
 
     say("\n".join(sorted(get_packages_with_prefixes())))
@@ -111,9 +120,10 @@ def list_packages() -> None:
 
 @app.command("prefix")
 def prefix(
-    package_name: Package, share: Annotated[bool, typer.Option("--share", help="Its share directory instead.")] = False
+    package_name: Package,
+    share: Annotated[bool, typer.Option("--share", help="Print its share directory instead.")] = False,
 ) -> None:
-    """Show the folder in which a package is: its own, if it was never built."""
+    """Print the prefix path of a package, which is its own folder if it was not built."""
     from robolink.companions.ament_index import get_package_prefix, get_package_share_directory
 
     say(get_package_share_directory(package_name) if share else get_package_prefix(package_name))
@@ -123,11 +133,13 @@ def prefix(
 def executables(
     package_name: Annotated[
         str,
-        typer.Argument(metavar="PACKAGE", help="Only those of this package.", autocompletion=complete.package_names),
+        typer.Argument(
+            metavar="PACKAGE", help="List only those of this package.", autocompletion=complete.package_names
+        ),
     ] = "",
-    full_path: Annotated[bool, typer.Option("--full-path", help="Their files instead.")] = False,
+    full_path: Annotated[bool, typer.Option("--full-path", help="Print their full paths instead.")] = False,
 ) -> None:
-    """List the executables that `robolink run PACKAGE EXECUTABLE` runs: of a package, or of all."""
+    """List the executables of a package, or of all."""
     from robolink.companions.ament_index import get_package_prefix, get_packages_with_prefixes
 
     if package_name:
@@ -155,9 +167,9 @@ def _executables_of(package: str) -> dict[str, NodeSource]:
 @app.command("xml")
 def xml(
     package_name: Package,
-    tag: Annotated[str, typer.Option("--tag", "-t", metavar="TAG", help="Only the texts of this element.")] = "",
+    tag: Annotated[str, typer.Option("--tag", "-t", metavar="TAG", help="Tag to print, such as version.")] = "",
 ) -> None:
-    """Show the package.xml of a package, or the texts of one of its elements."""
+    """Print the package.xml of a package, or one of its tags."""
     from robolink.companions.ament_index import get_package_share_directory
     from robolink.documents import xmltext
     from robolink.exceptions import NotFoundError

@@ -164,11 +164,12 @@ def root(
     network: Annotated[
         str,
         typer.Option(
-            metavar="NET", help="localhost, lan, off, HOST[:PORT], tls/HOST, a name of networks.yaml, or a file."
+            metavar="NET",
+            help="Network to use: localhost, lan, off, HOST[:PORT], tls/HOST, a name in networks.yaml, or a file.",
         ),
     ] = "",
 ) -> None:
-    """ROS 2 nodes from pip install: run them, launch them, see and send what they publish."""
+    """ROS 2 from pip install: run, launch, inspect and record nodes."""
     if network:
         from robolink.networks.asked import ask
 

@@ -27,14 +27,18 @@ app = typer.Typer()
 def router(
     listen: Annotated[
         list[str] | None,
-        typer.Option("--listen", metavar="ADDRESS", help="localhost (default), lan, HOST[:PORT] or tls/HOST[:PORT]."),
+        typer.Option(
+            "--listen",
+            metavar="ADDRESS",
+            help="Address to listen on: localhost (default), lan, HOST[:PORT] or tls/HOST[:PORT].",
+        ),
     ] = None,
     connect: Annotated[
         list[str] | None,
-        typer.Option("--connect", metavar="ROUTER", help="Another router, HOST[:PORT], that it joins."),
+        typer.Option("--connect", metavar="ROUTER", help="Router to connect to, HOST[:PORT]."),
     ] = None,
 ) -> None:
-    """Run a router until Ctrl-C: nodes of this machine use it by themselves, others with --network HOST.
+    """Run a Zenoh router until Ctrl-C. Nodes of this machine use it automatically, others with --network HOST.
 
     It listens on this machine only, unless --listen says more: --listen lan opens it to everybody who reaches its port.
     Both options may be there several times.

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from robolink.sim import WorldDescription
     from robolink.sim.worldfile import Checked
 
-app = typer.Typer(no_args_is_help=True, help="Check, draw and list the worlds that are simulated.")
+app = typer.Typer(no_args_is_help=True, help="Check, draw and list simulated worlds.")
 
-Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")]
+Workspace = Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Workspace to search first.")]
 
 
 @app.command("check")
@@ -26,13 +26,15 @@ def check_worlds(
     files: Annotated[
         list[str],
         typer.Argument(
-            metavar="NAME|FILE...", help="Worlds, ours or Webots' (.wbt).", autocompletion=complete.world_files
+            metavar="NAME|FILE...",
+            help="World files or names, of robolink or Webots (.wbt).",
+            autocompletion=complete.world_files,
         ),
     ],
     workspace: Workspace = "",
-    as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with the problems of each file.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON: a list with the problems of each file.")] = False,
 ) -> None:
-    """List what is wrong with worlds, a line for each problem; the exit code is 1 if anything is."""
+    """Check world files, and print a line for each problem; the exit code is 1 if there is any."""
     found = [_checked(each, workspace) for each in files]
     if as_json:
         import json
@@ -51,15 +53,15 @@ def check_worlds(
 def draw_world(
     file: Annotated[
         str,
-        typer.Argument(metavar="NAME|FILE", help="A world.", autocompletion=complete.world_files),
+        typer.Argument(metavar="NAME|FILE", help="World file or name.", autocompletion=complete.world_files),
     ],
-    out: Annotated[Path, typer.Argument(metavar="OUT", help="A .png, .svg or .pdf file.")],
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="File to write: .png, .svg or .pdf.")],
     size: Annotated[
-        int, typer.Option("--size", metavar="PIXELS", help="Of the longer side.", min=300, max=20_000)
+        int, typer.Option("--size", metavar="PIXELS", help="Length of the longer side, in pixels.", min=300, max=20_000)
     ] = 1000,
     workspace: Workspace = "",
 ) -> None:
-    """Draw a world as it begins, into a picture (needs matplotlib: pip install matplotlib)."""
+    """Draw a world in its initial state (needs matplotlib: pip install matplotlib)."""
     from robolink.cli.shared.picture import check_picture
     from robolink.documents.foreign import warnings_to
     from robolink.sim.drawing import save_world
@@ -74,9 +76,9 @@ def draw_world(
 @app.command("list")
 def list_all(
     workspace: Workspace = "",
-    as_json: Annotated[bool, typer.Option("--json", help="JSON: names, files and descriptions.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON: names, files and descriptions.")] = False,
 ) -> None:
-    """List the worlds that there are."""
+    """List the available worlds."""
     from robolink.cli.shared.layout import aligned
     from robolink.workspace import list_worlds, purpose_of
 
@@ -94,10 +96,10 @@ def list_all(
 @app.command("schema")
 def show_schema(
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write it there instead of showing it.")
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="File to write instead of printing it.")
     ] = None,
 ) -> None:
-    """Show the JSON schema of world files, by which editors complete and check them while one writes.
+    """Print the JSON schema of world files, with which editors complete and check them.
 
     An editor takes it from a world's first line: # yaml-language-server: $schema=world.schema.json
     """

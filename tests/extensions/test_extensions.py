@@ -227,7 +227,7 @@ def test_faults_are_one_line(words: list[str], reason: str, capsys: pytest.Captu
 @pytest.mark.usefixtures("package")
 def test_a_command_of_robolinks_own_goes_first(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["topic", "list", "--help"]) == 0
-    assert "List the topics that are published or subscribed to." in capsys.readouterr().out
+    assert "List the topics that have publishers or subscriptions." in capsys.readouterr().out
 
 
 @pytest.mark.usefixtures("package")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from robolink.context import Context
 
-app = typer.Typer(no_args_is_help=True, help="See which actions there are, and send goals.")
+app = typer.Typer(no_args_is_help=True, help="List actions, and send goals.")
 
 
 def action_names(incomplete: str) -> list[str]:
@@ -46,19 +46,19 @@ Action = Annotated[
     str,
     typer.Argument(help="Name of the action, such as /dock.", metavar="ACTION", autocompletion=action_names),
 ]
-ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Also show the types.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
-Count = Annotated[bool, typer.Option("--count-actions", "-c", help="Only say how many there are.")]
+ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Print the types too.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Count = Annotated[bool, typer.Option("--count-actions", "-c", help="Print only the number.")]
 
 
 @app.callback()
 def _noun() -> None:
-    """See which actions there are, and send goals."""
+    """List actions, and send goals."""
 
 
 @app.command("list")
 def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: AsJson = False) -> None:
-    """List the actions that are served or that have a client."""
+    """List the actions that have servers or clients."""
     from robolink.cli.shared.graph import show_names
     from robolink.cli.shared.session import looking
 
@@ -69,7 +69,7 @@ def list_actions(show_types: ShowTypes = False, count: Count = False, as_json: A
 
 @app.command("type")
 def show_type(action: Action, as_json: AsJson = False) -> None:
-    """Show the type of an action."""
+    """Print the type of an action."""
     from robolink.cli.shared.graph import absolute, show_types
     from robolink.cli.shared.session import looking
     from robolink.exceptions import NotFoundError
@@ -88,7 +88,7 @@ def find(
     type_: Annotated[
         str,
         typer.Argument(
-            help="Fibonacci or example_interfaces/action/Fibonacci.",
+            help="Action type, such as example_interfaces/action/Fibonacci or Fibonacci.",
             metavar="TYPE",
             autocompletion=complete.action_types,
         ),
@@ -96,7 +96,7 @@ def find(
     count: Count = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the actions of a type."""
+    """List the actions of an action type."""
     from robolink.cli.shared.graph import show_of_type
     from robolink.cli.shared.session import looking
 
@@ -109,10 +109,10 @@ def find(
 def show_info(
     action: Action,
     show_types: ShowTypes = False,
-    count: Annotated[bool, typer.Option("--count", "-c", help="Only say how many there are.")] = False,
+    count: Annotated[bool, typer.Option("--count", "-c", help="Print only the number.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Show which nodes serve an action, and which are its clients."""
+    """Show the servers and the clients of an action."""
     from robolink.cli.action.verbs import show
 
     show(action, types=show_types, count=count, as_json=as_json)
@@ -124,22 +124,24 @@ def send_goal(
     action: Action,
     type_: Annotated[
         str,
-        typer.Argument(help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=type_of_action),
+        typer.Argument(
+            help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=type_of_action
+        ),
     ] = "",
     values: Annotated[
-        str | None, typer.Argument(help="The goal in YAML, such as '{order: 10}'.", metavar="[VALUES]")
+        str | None, typer.Argument(help="Goal in YAML, such as '{order: 10}'.", metavar="[VALUES]")
     ] = None,
     from_stdin: Annotated[bool, typer.Option("--stdin", help="Read the goal from standard input.")] = False,
-    feedback: Annotated[bool, typer.Option("--feedback", "-f", help="Also show the feedback.")] = False,
+    feedback: Annotated[bool, typer.Option("--feedback", "-f", help="Print the feedback too.")] = False,
     timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", help="Give up when no server has answered after so many seconds.")
+        float, typer.Option("--timeout", metavar="S", help="Longest time to wait for an action server, in seconds.")
     ] = 5.0,
     node_name: Annotated[
-        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node that sends it.")
+        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node of this command.")
     ] = "",
-    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each thing that is shown.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object for each event of the goal.")] = False,
 ) -> int:
-    """Send a goal and show what comes of it. Ctrl-C cancels the goal. Exits with 1 unless it succeeds."""
+    """Send a goal and print its result; Ctrl-C cancels it. The exit code is 1 unless it succeeds."""
     from robolink.cli.action import verbs
     from robolink.cli.shared.messages import is_type, read_stdin
 

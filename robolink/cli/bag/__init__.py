@@ -15,28 +15,31 @@ from robolink.cli.shared.noun import ListedOptions
 from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say, say_json, tell
 
-app = typer.Typer(no_args_is_help=True, help="Record bags, look at them, convert and mend them.")
+app = typer.Typer(no_args_is_help=True, help="Record, play, inspect, convert and repair bags.")
 
-BagPath = Annotated[Path, typer.Argument(metavar="BAG", help="A bag's folder, or one .mcap or .db3 file.")]
+BagPath = Annotated[Path, typer.Argument(metavar="BAG", help="Folder of the bag, or one .mcap or .db3 file.")]
 
 
 @app.callback()
 def _noun() -> None:
-    """Record bags, look at them, convert and mend them."""
+    """Record, play, inspect, convert and repair bags."""
 
 
 @app.command("info")
 def show_info(
     bag: BagPath,
     storage: Storage = "",
-    topic_name: Annotated[bool, typer.Option("--topic-name", "-t", help="Only display topic names.")] = False,
+    topic_name: Annotated[bool, typer.Option("--topic-name", "-t", help="Print only the topic names.")] = False,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Also sizes of topics, requests and responses: reads all messages.")
+        bool,
+        typer.Option(
+            "--verbose", "-v", help="Print sizes of topics, and requests and responses of services; reads all messages."
+        ),
     ] = False,
-    sort: Annotated[str, choice("--sort", ["name", "type", "count"], "Order of topics and services")] = "name",
-    as_json: Annotated[bool, typer.Option("--json", help="JSON, for programs.")] = False,
+    sort: Annotated[str, choice("--sort", ["name", "type", "count"], "Sort topics and services by")] = "name",
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Print information about a bag."""
+    """Show the duration, size, topics and services of a bag."""
     from robolink.bag.information import details_of, info_data, info_text, topic_names
     from robolink.bag.reader import open_bag
 
@@ -61,13 +64,13 @@ def list_plugins(
         str,
         typer.Argument(
             metavar="storage|converter|compressor|decompressor",
-            help="What to list.",
+            help="Type of the plugins.",
             autocompletion=lambda: ["storage", "converter", "compressor", "decompressor"],
         ),
     ],
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Also say what each is.")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print descriptions too.")] = False,
 ) -> None:
-    """List the storages and compressions that there are."""
+    """List the plugins for storage and compression."""
     from robolink.cli.bag.plugins import plugins
 
     found = plugins(plugin_type)
@@ -84,7 +87,7 @@ app.command("convert", cls=ListedOptions)(convert_bags)
 
 @app.command("reindex")
 def reindex_bag(bag: BagPath, storage: Storage = "") -> None:
-    """Reconstruct the metadata of a bag, and make files whole whose recorder was killed."""
+    """Reconstruct the metadata of a bag, and repair files that were not closed."""
     from robolink.bag.reindexing import reindex
 
     say(f"Beginning reindexing bag in directory: {bag}" if bag.is_dir() else f"Beginning reindexing bag: {bag}")

@@ -21,43 +21,47 @@ Names = list[str] | None
 """Values of an option that takes several."""
 _FORMATS = ["zstd", "lz4", "none"]
 
-Words = Annotated[
-    Names, typer.Argument(metavar="[IN...] OUT", help="Bags to read, and the folder of the bag to write.")
-]
-Inputs = Annotated[
-    Names, typer.Option("--input", "-i", metavar="BAG [STORAGE]", help="A bag to read; as often as needed.")
-]
+Words = Annotated[Names, typer.Argument(metavar="[IN...] OUT", help="Bags to read, and the folder of the new bag.")]
+Inputs = Annotated[Names, typer.Option("--input", "-i", metavar="BAG [STORAGE]", help="Bag to read; may be repeated.")]
 OutputOptions = Annotated[
     Path | None,
-    typer.Option("--output-options", "-o", metavar="YAML", help="File with rosbag2's options of the outputs."),
+    typer.Option(
+        "--output-options", "-o", metavar="YAML", help="YAML file with options of the output bags, as rosbag2 takes it."
+    ),
 ]
-Storage = Annotated[str, choice("--storage", STORAGES, "Storage of the output", short="-s")]
-Compression = Annotated[str, choice("--compression", _FORMATS, "Compression, in an MCAP of its chunks")]
+Storage = Annotated[str, choice("--storage", STORAGES, "Storage plugin of the new bag", short="-s")]
+Compression = Annotated[str, choice("--compression", _FORMATS, "Compression format, of chunks in MCAP files")]
 CompressionMode = Annotated[
-    str, choice("--compression-mode", ["none", "file", "message"], "rosbag2's other ways to compress, by zstd")
+    str, choice("--compression-mode", ["none", "file", "message"], "Unit of compression by rosbag2, with zstd")
 ]
-CompressionFormat = Annotated[str, choice("--compression-format", _FORMATS, "ros2's name of --compression")]
+CompressionFormat = Annotated[str, choice("--compression-format", _FORMATS, "Same as --compression")]
 MaxSize = Annotated[
-    int, typer.Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Size at which a new file begins.")
+    int, typer.Option("--max-bag-size", "-b", metavar="BYTES", min=0, help="Size at which the bag is split, in bytes.")
 ]
 MaxDuration = Annotated[
-    float, typer.Option("--max-bag-duration", "-d", metavar="S", min=0, help="Time after which a new file begins.")
+    float,
+    typer.Option("--max-bag-duration", "-d", metavar="S", min=0, help="Time after which the bag is split, in seconds."),
 ]
-Topics = Annotated[Names, names("--topics", help="Topics to keep; all by default.")]
-TopicTypes = Annotated[Names, names("--topic-types", help="Types of topics to keep.")]
-Services = Annotated[Names, names("--services", help="Services whose events to keep.")]
-Actions = Annotated[Names, names("--actions", help="Actions whose topics to keep.")]
-Regex = Annotated[str, typer.Option("--regex", "-e", help="Topics, services and actions to keep.")]
-ExcludeRegex = Annotated[str, typer.Option("--exclude-regex", help="Topics, services and actions to leave out.")]
-ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to leave out.")]
-ExcludeTypes = Annotated[Names, names("--exclude-topic-types", help="Types of topics to leave out.")]
-ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to leave out.")]
-ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to leave out.")]
+Topics = Annotated[Names, names("--topics", help="Topics to convert; all by default.")]
+TopicTypes = Annotated[Names, names("--topic-types", help="Topic types to convert.")]
+Services = Annotated[Names, names("--services", help="Services to convert, by their events.")]
+Actions = Annotated[Names, names("--actions", help="Actions to convert.")]
+Regex = Annotated[
+    str,
+    typer.Option(
+        "--regex", "-e", help="Convert topics, services and actions whose names match this regular expression."
+    ),
+]
+ExcludeRegex = Annotated[str, typer.Option("--exclude-regex", help="Exclude names that match this regular expression.")]
+ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to exclude.")]
+ExcludeTypes = Annotated[Names, names("--exclude-topic-types", help="Topic types to exclude.")]
+ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to exclude.")]
+ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to exclude.")]
 Offset = Annotated[
-    float, typer.Option("--start-offset", metavar="S", min=0, help="Seconds at the beginning to leave out.")
+    float, typer.Option("--start-offset", metavar="S", min=0, help="Offset from the start of the bags, in seconds.")
 ]
 Duration = Annotated[
-    float, typer.Option("--duration", metavar="S", min=0, help="Seconds to keep from there; 0 is all.")
+    float, typer.Option("--duration", metavar="S", min=0, help="Duration to convert, in seconds; 0 for all.")
 ]
 
 
@@ -85,7 +89,7 @@ def convert_bags(
     start_offset: Offset = 0.0,
     duration: Duration = 0.0,
 ) -> None:
-    """Write bags anew: other compression, storage, files or topics; several become one.
+    """Convert bags to a new one: compression, storage, split files, selected topics, several bags merged.
 
     robolink bag convert IN OUT --compression zstd --topics /scan /odom
 

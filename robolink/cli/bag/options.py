@@ -32,11 +32,11 @@ def file(*flags: str, help: str) -> Any:  # noqa: A002
 
 
 KnownStorage = Annotated[
-    str, choice("--storage", STORAGES, "Storage of the bag, which its files tell anyway", short="-s")
+    str, choice("--storage", STORAGES, "Storage plugin of the bag; detected by default", short="-s")
 ]
-Overrides = Annotated[str, file("--qos-profile-overrides-path", help="YAML with profiles by topic.")]
-NoKeys = Annotated[bool, flag("--disable-keyboard-controls", help="Let the keyboard alone.")]
-LogLevel = Annotated[str, choice("--log-level", ["debug", "info", "warn", "error", "fatal"], "What is told")]
+Overrides = Annotated[str, file("--qos-profile-overrides-path", help="YAML file with QoS profiles by topic.")]
+NoKeys = Annotated[bool, flag("--disable-keyboard-controls", help="Disable the keyboard controls.")]
+LogLevel = Annotated[str, choice("--log-level", ["debug", "info", "warn", "error", "fatal"], "Log level")]
 
 
 def overrides(path: str) -> Mapping[str, QoSProfile]:

@@ -22,37 +22,59 @@ if TYPE_CHECKING:
 Names = list[str] | None
 
 
-Bags = Annotated[Names, typer.Argument(metavar="[BAG]...", help="Bags to play, merged by time.", show_default=False)]
-Inputs = Annotated[Names, names("--input", "-i", metavar="BAG [STORAGE]", help="A bag to play; as often as needed.")]
-Rate = Annotated[float, typer.Option("--rate", "-r", metavar="X", help="Times as fast as recorded.")]
+Bags = Annotated[
+    Names, typer.Argument(metavar="[BAG]...", help="Bags to play, their messages merged by time.", show_default=False)
+]
+Inputs = Annotated[Names, names("--input", "-i", metavar="BAG [STORAGE]", help="Bag to play; may be repeated.")]
+Rate = Annotated[float, typer.Option("--rate", "-r", metavar="X", help="Rate of the playback, as a factor.")]
 Topics = Annotated[Names, names("--topics", help="Topics to play; all by default.")]
-Services = Annotated[Names, names("--services", help="Services whose events to play.")]
-Actions = Annotated[Names, names("--actions", help="Actions whose topics to play.")]
-Regex = Annotated[str, typer.Option("--regex", "-e", metavar="REGEX", help="Play what has this in its name.")]
+Services = Annotated[Names, names("--services", help="Services to play, by their events.")]
+Actions = Annotated[Names, names("--actions", help="Actions to play.")]
+Regex = Annotated[
+    str,
+    typer.Option(
+        "--regex",
+        "-e",
+        metavar="REGEX",
+        help="Play topics, services and actions whose names match this regular expression.",
+    ),
+]
 ExcludeRegex = Annotated[
-    str, typer.Option("--exclude-regex", "-x", "--exclude", metavar="REGEX", help="Leave out such names.")
+    str,
+    typer.Option(
+        "--exclude-regex", "-x", "--exclude", metavar="REGEX", help="Exclude names that match this regular expression."
+    ),
 ]
-ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to leave out.")]
-ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to leave out.")]
-ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to leave out.")]
-Loop = Annotated[bool, flag("--loop", "-l", help="Begin again at the end.")]
-Remap = Annotated[Names, names("--remap", "-m", metavar="OLD:=NEW...", help="Other names for topics.")]
+ExcludeTopics = Annotated[Names, names("--exclude-topics", help="Topics to exclude.")]
+ExcludeServices = Annotated[Names, names("--exclude-services", help="Services to exclude.")]
+ExcludeActions = Annotated[Names, names("--exclude-actions", help="Actions to exclude.")]
+Loop = Annotated[bool, flag("--loop", "-l", help="Loop: start again at the end.")]
+Remap = Annotated[Names, names("--remap", "-m", metavar="OLD:=NEW...", help="Remap topics.")]
 ClockRate = Annotated[
-    str, typer.Option("--clock", metavar="[HZ]", help="Publish the bag's time on /clock, at 40 Hz by default.")
+    str,
+    typer.Option(
+        "--clock", metavar="[HZ]", help="Publish the time of the bag to /clock, at this rate in Hz (default: 40)."
+    ),
 ]
-ClockTopics = Annotated[Names, names("--clock-topics", help="Publish /clock before each message of these topics.")]
-ClockAll = Annotated[bool, flag("--clock-topics-all", help="Publish /clock before each message.")]
-Delay = Annotated[float, seconds("--delay", "Wait before the first message, of each round of a loop.", short="-d")]
-Duration = Annotated[float, typer.Option("--playback-duration", metavar="S", help="Seconds of the bag; all below 0.")]
+ClockTopics = Annotated[Names, names("--clock-topics", help="Publish to /clock before each message of these topics.")]
+ClockAll = Annotated[bool, flag("--clock-topics-all", help="Publish to /clock before each message.")]
+Delay = Annotated[float, seconds("--delay", "Delay before the playback, in each loop, in seconds.", short="-d")]
+Duration = Annotated[
+    float,
+    typer.Option("--playback-duration", metavar="S", help="Duration to play, in seconds; negative for all of the bag."),
+]
 UntilSec = Annotated[
-    float, typer.Option("--playback-until-sec", metavar="S", help="End at this time, in seconds since 1970.")
+    float, typer.Option("--playback-until-sec", metavar="S", help="Time at which to stop, in seconds since the epoch.")
 ]
 UntilNsec = Annotated[
-    int, typer.Option("--playback-until-nsec", metavar="NS", help="End at this time, in nanoseconds since 1970.")
+    int,
+    typer.Option("--playback-until-nsec", metavar="NS", help="Time at which to stop, in nanoseconds since the epoch."),
 ]
-Paused = Annotated[bool, flag("--start-paused", "-p", help="Start in a pause.")]
-Offset = Annotated[float, seconds("--start-offset", "Begin so many seconds after the start of the bag.")]
-Acked = Annotated[int, typer.Option("--wait-for-all-acked", metavar="MS", help="Accepted: nothing is acknowledged.")]
+Paused = Annotated[bool, flag("--start-paused", "-p", help="Start paused.")]
+Offset = Annotated[float, seconds("--start-offset", "Offset from the start of the bag, in seconds.")]
+Acked = Annotated[
+    int, typer.Option("--wait-for-all-acked", metavar="MS", help="Accepted for ros2's sake: nothing is acknowledged.")
+]
 Loan = Annotated[bool, typer.Option("--disable-loan-message", hidden=True)]
 StorageConfig = Annotated[str, typer.Option("--storage-config-file", metavar="FILE", hidden=True)]
 Requests = Annotated[
@@ -63,21 +85,30 @@ Source = Annotated[
     choice(
         "--service-requests-source",
         ["service_introspection", "client_introspection"],
-        "Which recorded requests are sent: those received, or those sent",
+        "Recorded requests to send, those of the service or of its clients",
     ),
 ]
-Order = Annotated[str, choice("--message-order", ["received", "sent"], "Time that counts")]
+Order = Annotated[
+    str, choice("--message-order", ["received", "sent"], "Order of the messages, by the time at which they were")
+]
 UpdateRate = Annotated[
-    float, typer.Option("--progress-bar-update-rate", metavar="HZ", help="Of the progress line; none below 0.")
+    float,
+    typer.Option(
+        "--progress-bar-update-rate", metavar="HZ", help="Update rate of the progress line, in Hz; negative for none."
+    ),
 ]
 Separation = Annotated[int, typer.Option("--progress-bar-separation-lines", hidden=True)]
 ReadAhead = Annotated[
     int,
     typer.Option(
-        "--read-ahead-queue-size", metavar="N", min=1, max=2**31, help="Messages sorted by --message-order sent."
+        "--read-ahead-queue-size",
+        metavar="N",
+        min=1,
+        max=2**31,
+        help="Number of messages read ahead, for --message-order sent.",
     ),
 ]
-NodeName = Annotated[str, typer.Option("--node-name", metavar="NAME", help="Name of the player's node.")]
+NodeName = Annotated[str, typer.Option("--node-name", metavar="NAME", help="Name of the player node.")]
 
 
 CLOCK, CLOCK_RATE = "--clock", "40"
@@ -150,9 +181,9 @@ def play(
     log_level: shared.LogLevel = "info",
     enclave: Enclave = "",
 ) -> None:
-    """Publish what a bag has recorded: `bag play walk`, `bag play walk -r 2 --topics /scan /odom`.
+    """Play back a bag: `bag play walk`, `bag play walk -r 2 --topics /scan /odom`.
 
-    Space pauses it, the right arrow or s plays the next message, up and down change the rate.
+    Space pauses and resumes, the right arrow or s plays the next message, up and down change the rate.
     """
     from robolink.cli.bag.player import Wish, run
 

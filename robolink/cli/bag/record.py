@@ -31,80 +31,122 @@ Words = Annotated[
     list[str] | None,
     typer.Argument(metavar="[TOPIC]...", help="Topics to record.", autocompletion=_TOPICS, show_default=False),
 ]
-Output = Annotated[str, typer.Option("--output", "-o", metavar="FOLDER", help="The bag; rosbag2_DATE by default.")]
-Storage = Annotated[str, choice("--storage", STORAGES, "Format of the files", short="-s")]
+Output = Annotated[
+    str, typer.Option("--output", "-o", metavar="FOLDER", help="Folder of the new bag; rosbag2_DATE by default.")
+]
+Storage = Annotated[str, choice("--storage", STORAGES, "Storage plugin", short="-s")]
 
 Topics = Annotated[list[str] | None, names("--topics", help="Topics to record.", completion=_TOPICS)]
 TopicTypes = Annotated[
     list[str] | None,
-    names("--topic-types", help="Record all topics of these types.", completion=complete.message_types),
+    names("--topic-types", help="Topic types to record.", completion=complete.message_types),
 ]
-Services = Annotated[list[str] | None, names("--services", help="Services whose events are recorded.")]
+Services = Annotated[list[str] | None, names("--services", help="Services to record, by their events.")]
 Actions = Annotated[list[str] | None, names("--actions", help="Actions to record.")]
 All = Annotated[bool, flag("--all", "-a", help="Record all topics, services and actions.")]
 AllTopics = Annotated[bool, flag("--all-topics", help="Record all topics.")]
-AllServices = Annotated[bool, flag("--all-services", help="Record the events of all services that have them.")]
+AllServices = Annotated[bool, flag("--all-services", help="Record all services whose introspection is enabled.")]
 AllActions = Annotated[bool, flag("--all-actions", help="Record all actions.")]
-Regex = Annotated[str, typer.Option("--regex", "-e", metavar="REGEX", help="Record what has this in its name.")]
-ExcludeRegex = Annotated[str, typer.Option("--exclude-regex", metavar="REGEX", help="Leave out such names.")]
-ExcludeTopics = Annotated[list[str] | None, names("--exclude-topics", help="Leave out topics.", completion=_TOPICS)]
-ExcludeTypes = Annotated[list[str] | None, names("--exclude-topic-types", help="Leave out topics of these types.")]
-ExcludeServices = Annotated[list[str] | None, names("--exclude-services", help="Leave out services.")]
-ExcludeActions = Annotated[list[str] | None, names("--exclude-actions", help="Leave out actions.")]
-
-Unpublished = Annotated[bool, flag("--include-unpublished-topics", help="Also topics with subscriptions only.")]
-Hidden = Annotated[bool, flag("--include-hidden-topics", help="Also those that begin with _.")]
-NoDiscovery = Annotated[bool, flag("--no-discovery", help="Only what is there at the start.")]
-PollingInterval = Annotated[
-    int, typer.Option("--polling-interval", "-p", metavar="MS", help="Accepted: nothing polls.")
+Regex = Annotated[
+    str,
+    typer.Option(
+        "--regex",
+        "-e",
+        metavar="REGEX",
+        help="Record topics, services and actions whose names match this regular expression.",
+    ),
 ]
-IgnoreLeaf = Annotated[bool, flag("--ignore-leaf-topics", help="Leave out topics that nobody subscribes to.")]
-StaticTopics = Annotated[str, file("--static-topics-path", help="YAML with topics and types to listen to at once.")]
+ExcludeRegex = Annotated[
+    str, typer.Option("--exclude-regex", metavar="REGEX", help="Exclude names that match this regular expression.")
+]
+ExcludeTopics = Annotated[list[str] | None, names("--exclude-topics", help="Topics to exclude.", completion=_TOPICS)]
+ExcludeTypes = Annotated[list[str] | None, names("--exclude-topic-types", help="Topic types to exclude.")]
+ExcludeServices = Annotated[list[str] | None, names("--exclude-services", help="Services to exclude.")]
+ExcludeActions = Annotated[list[str] | None, names("--exclude-actions", help="Actions to exclude.")]
 
-Format = Annotated[str, choice("--serialization-format", ["cdr"], "Accepted, as this is what comes", short="-f")]
-MaxSize = Annotated[int, _number("--max-bag-size", "-b", metavar="BYTES", help="Begin a new file at this size.")]
+Unpublished = Annotated[
+    bool, flag("--include-unpublished-topics", help="Record topics that have no publisher yet, too.")
+]
+Hidden = Annotated[bool, flag("--include-hidden-topics", help="Include hidden names, which begin with _.")]
+NoDiscovery = Annotated[bool, flag("--no-discovery", help="Do not discover topics after the start.")]
+PollingInterval = Annotated[
+    int,
+    typer.Option(
+        "--polling-interval", "-p", metavar="MS", help="Accepted for ros2's sake: discovery needs no polling."
+    ),
+]
+IgnoreLeaf = Annotated[bool, flag("--ignore-leaf-topics", help="Ignore topics without subscriptions.")]
+StaticTopics = Annotated[
+    str,
+    file("--static-topics-path", help="YAML file with topics and their types, which are subscribed to at the start."),
+]
+
+Format = Annotated[str, choice("--serialization-format", ["cdr"], "Serialization format, always", short="-f")]
+MaxSize = Annotated[
+    int,
+    _number("--max-bag-size", "-b", metavar="BYTES", help="Size at which the bag is split, in bytes; 0 never splits."),
+]
 MaxDuration = Annotated[
     float,
-    typer.Option("--max-bag-duration", "-d", metavar="S", help="Begin a new file after so many seconds.", min=0),
+    typer.Option(
+        "--max-bag-duration",
+        "-d",
+        metavar="S",
+        help="Time after which the bag is split, in seconds; 0 never splits.",
+        min=0,
+    ),
 ]
-MaxFiles = Annotated[int, _number("--max-bag-files", help="Keep so many files, the newest.")]
+MaxFiles = Annotated[int, _number("--max-bag-files", help="Number of newest files to keep; older ones are deleted.")]
 CacheSize = Annotated[
-    int, _number("--max-cache-size", metavar="BYTES", help="Of what waits to be written; 0: no limit.")
+    int,
+    _number(
+        "--max-cache-size",
+        metavar="BYTES",
+        help="Largest size of the cache of messages to write, in bytes; 0 for no limit.",
+    ),
 ]
-CacheDuration = Annotated[float, seconds("--max-cache-duration", "Of what waits, or of a snapshot; 0: no limit.")]
-StartPaused = Annotated[bool, flag("--start-paused", help="Start in a pause.")]
-SimTime = Annotated[bool, flag("--use-sim-time", help="Note messages with the time of /clock.")]
-NodeName = Annotated[str, typer.Option("--node-name", metavar="NAME", help="Name of the recorder's node.")]
+CacheDuration = Annotated[
+    float, seconds("--max-cache-duration", "Longest time in the cache or the snapshot, in seconds; 0 for no limit.")
+]
+StartPaused = Annotated[bool, flag("--start-paused", help="Start paused.")]
+SimTime = Annotated[bool, flag("--use-sim-time", help="Use simulation time, from /clock, for the timestamps.")]
+NodeName = Annotated[str, typer.Option("--node-name", metavar="NAME", help="Name of the recorder node.")]
 CustomData = Annotated[
-    list[str] | None, names("--custom-data", metavar="KEY=VALUE...", help="Texts for metadata.yaml.")
+    list[str] | None, names("--custom-data", metavar="KEY=VALUE...", help="Custom data to store in metadata.yaml.")
 ]
-Snapshot = Annotated[bool, flag("--snapshot-mode", help="Keep it in memory; ~/snapshot or the key s writes it.")]
+Snapshot = Annotated[
+    bool, flag("--snapshot-mode", help="Keep messages in memory until the service ~/snapshot or the key s writes them.")
+]
 Repeat = Annotated[
     list[str] | None,
     names(
         "--repeat-transient-local",
         "--repeat-latched",
         metavar="TOPIC[=N]...",
-        help="Begin each further file and snapshot with the last N messages of latched topics.",
+        help="Repeat the last N messages of these transient local topics in each new file and snapshot.",
     ),
 ]
 RepeatAll = Annotated[
-    bool, flag("--repeat-all-transient-local", help="So for all latched topics, as many as publishers keep.")
+    bool,
+    flag("--repeat-all-transient-local", help="Repeat those of all transient local topics, as many as their depth."),
 ]
 
 CompressionMode = Annotated[
-    str, choice("--compression-mode", ["none", "chunk", "file", "message"], "What is compressed")
+    str, choice("--compression-mode", ["none", "chunk", "file", "message"], "Unit of compression")
 ]
 CompressionFormat = Annotated[
-    str, choice("--compression-format", ["zstd", "lz4"], "With what; alone, it is for chunks")
+    str, choice("--compression-format", ["zstd", "lz4"], "Compression format; chunks by default")
 ]
 PRESETS = ["none", "fastwrite", "resilient", "zstd_fast", "zstd_small"]
-Preset = Annotated[str, choice("--storage-preset-profile", PRESETS, "rosbag2's presets: zstd_ ones compress chunks")]
-StorageConfig = Annotated[str, file("--storage-config-file", help="YAML of the MCAP storage: its compression counts.")]
+Preset = Annotated[str, choice("--storage-preset-profile", PRESETS, "Preset of the MCAP storage")]
+StorageConfig = Annotated[
+    str,
+    file("--storage-config-file", help="YAML file with settings of the MCAP storage, of which compression is used."),
+]
 QueueSize = Annotated[int, typer.Option("--compression-queue-size", hidden=True)]
 Threads = Annotated[int, typer.Option("--compression-threads", hidden=True)]
 Priority = Annotated[int, typer.Option("--compression-threads-priority", hidden=True)]
-AsJson = Annotated[bool, flag("--json", help="In the end, one object of JSON with the figures.")]
+AsJson = Annotated[bool, flag("--json", help="Print a JSON object with the statistics at the end.")]
 
 
 def record(
@@ -160,7 +202,7 @@ def record(
 ) -> None:
     """Record topics into a bag until Ctrl-C: `bag record -a`, `bag record /scan /odom -o lap`.
 
-    The bag is valid at every moment, whatever ends the recording. Space pauses it, s writes a snapshot.
+    The bag is valid at every moment, even after a crash. Space pauses and resumes, s takes a snapshot.
     """
     from robolink.cli.bag.recorder import Wish, run
 

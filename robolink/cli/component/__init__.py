@@ -10,26 +10,26 @@ from robolink.cli.shared import complete
 from robolink.cli.shared.options import choice
 from robolink.cli.shared.output import say
 
-app = typer.Typer(no_args_is_help=True, help="See what containers of nodes hold, and load nodes into them.")
+app = typer.Typer(no_args_is_help=True, help="List component containers, load nodes into them and unload them.")
 
 LEVELS = {"": 0, "debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 """Log levels by name, as rcl_interfaces/msg/Log has them."""
 
 _NODE = {"metavar": "CONTAINER", "autocompletion": complete.node_names}
-Container = Annotated[str, typer.Argument(help="Name of its node, such as /ComponentManager.", **_NODE)]
+Container = Annotated[str, typer.Argument(help="Name of the container node, such as /ComponentManager.", **_NODE)]
 
 
 @app.callback()
 def _noun() -> None:
-    """See what containers of nodes hold, and load nodes into them."""
+    """List component containers, load nodes into them and unload them."""
 
 
 @app.command("list")
 def list_components(
-    container: Annotated[str, typer.Argument(help="Only the nodes of this one.", **_NODE)] = "",
-    containers_only: Annotated[bool, typer.Option("--containers-only", help="Only the containers' names.")] = False,
+    container: Annotated[str, typer.Argument(help="List only the components of this container.", **_NODE)] = "",
+    containers_only: Annotated[bool, typer.Option("--containers-only", help="List only the containers.")] = False,
 ) -> None:
-    """List the containers that run, and the nodes in each, with their numbers."""
+    """List the running containers and their components, with their unique IDs."""
     from robolink.cli.component import verbs
 
     if containers_only:
@@ -44,26 +44,31 @@ def list_components(
 
 
 @app.command("types")
-def types(package: Annotated[str, typer.Argument(metavar="PACKAGE", help="Only those of this one.")] = "") -> None:
-    """List the components that packages offer: in C++ those that were installed, in Python classes of nodes."""
+def types(
+    package: Annotated[str, typer.Argument(metavar="PACKAGE", help="List only the components of this package.")] = "",
+) -> None:
+    """List the available components: installed ones of C++, and node classes of Python."""
     from robolink.cli.component import verbs
 
     for name, found in verbs.offered(package):
         say("\n".join([name, *(f"  {each}" for each in found)]))
 
 
-Name = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Another name for the node.")]
-Namespace = Annotated[str, typer.Option("--node-namespace", metavar="NAME", help="The node's namespace.")]
-LogLevel = Annotated[str, choice("--log-level", list(LEVELS)[1:], "The node's log level")]
-Remap = Annotated[list[str] | None, typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="Rename.")]
+Name = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node, instead of its own.")]
+Namespace = Annotated[str, typer.Option("--node-namespace", metavar="NAME", help="Namespace of the node.")]
+LogLevel = Annotated[str, choice("--log-level", list(LEVELS)[1:], "Log level of the node")]
+Remap = Annotated[list[str] | None, typer.Option("--remap-rule", "-r", metavar="FROM:=TO", help="Remap a name.")]
 Parameters = Annotated[
     list[str] | None, typer.Option("--parameter", "-p", metavar="NAME:=VALUE", help="Set a parameter.")
 ]
 Extra = Annotated[
-    list[str] | None, typer.Option("--extra-argument", "-e", metavar="NAME:=VALUE", help="For the container.")
+    list[str] | None,
+    typer.Option("--extra-argument", "-e", metavar="NAME:=VALUE", help="Extra argument for the container."),
 ]
-Package = Annotated[str, typer.Argument(metavar="PACKAGE", help="Package that offers it.")]
-Plugin = Annotated[str, typer.Argument(metavar="TYPE", help="Its type: an executable, or as types lists it.")]
+Package = Annotated[str, typer.Argument(metavar="PACKAGE", help="Package of the component.")]
+Plugin = Annotated[
+    str, typer.Argument(metavar="TYPE", help="Type of the component, as 'component types' lists it, or an executable.")
+]
 
 
 @app.command("load")
@@ -77,9 +82,9 @@ def load(
     remap: Remap = None,
     parameters: Parameters = None,
     extra: Extra = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only the number.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print only the unique ID.")] = False,
 ) -> None:
-    """Load a node into a running container."""
+    """Load a component into a container."""
     from robolink.cli.component import verbs
 
     wanted = verbs.Wanted(
@@ -93,9 +98,9 @@ def load(
 @app.command("unload")
 def unload(
     container: Container,
-    numbers: Annotated[list[int], typer.Argument(metavar="NUMBER...", min=0, help="Numbers that list shows.")],
+    numbers: Annotated[list[int], typer.Argument(metavar="NUMBER...", min=0, help="Unique IDs of the components.")],
 ) -> None:
-    """Take nodes out of a container."""
+    """Unload components from a container."""
     from robolink.cli.component import verbs
 
     for number in numbers:
@@ -114,10 +119,10 @@ def standalone(
     parameters: Parameters = None,
     extra: Extra = None,
     container: Annotated[
-        str, typer.Option("--container-node-name", "-c", metavar="NAME", help="Name of the container's node.")
+        str, typer.Option("--container-node-name", "-c", metavar="NAME", help="Name of the container node.")
     ] = "",
 ) -> None:
-    """Run a container with one node in it, until Ctrl-C."""
+    """Run a component in a container of its own, until Ctrl-C."""
     from robolink.cli.component import verbs
 
     wanted = verbs.Wanted(

@@ -17,16 +17,16 @@ MARKS = {"ok": "ok", "warning": "WARN", "error": "FAIL", "unknown": "?"}
 
 @app.command("doctor")
 def doctor(
-    report: Annotated[bool, typer.Option("--report", "-r", help="Print all that is known instead.")] = False,
+    report: Annotated[bool, typer.Option("--report", "-r", help="Print all reports instead of the checks.")] = False,
     report_failed: Annotated[
-        bool, typer.Option("--report-failed", "-rf", help="Also print all that is known of what failed.")
+        bool, typer.Option("--report-failed", "-rf", help="Print the reports of failed checks too.")
     ] = False,
     include_warnings: Annotated[
         bool, typer.Option("--include-warnings", "-iw", help="Count warnings as failures.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object.")] = False,
 ) -> None:
-    """Check the settings, the network and the running system; exit code 1 if something is wrong."""
+    """Check the settings, the network and the running system; the exit code is 1 if a check fails."""
     from robolink.cli.doctor.checks import CHECKS
     from robolink.cli.doctor.gathering import gather
     from robolink.cli.doctor.graph_checks import GRAPH_CHECKS

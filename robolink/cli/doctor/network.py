@@ -25,9 +25,9 @@ LONGEST = 600
 
 @app.callback(invoke_without_command=True)
 def network(
-    context: typer.Context, as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False
+    context: typer.Context, as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object.")] = False
 ) -> None:
-    """Show where this session may listen and go, whom it has found and how, and what the rest would need."""
+    """Show where this session listens and connects, which sessions it has discovered and how, and what is missing."""
     if context.invoked_subcommand is not None:
         return
     from robolink.cli.doctor.gathering import gather
@@ -142,14 +142,14 @@ _MANUAL = "none; docs/reference/networks.md has examples for a launch file, netw
 @app.command()
 def limit(
     file: Annotated[
-        Path | None, typer.Argument(metavar="[FILE]", help="A launch file, or a file of limits, to be checked.")
+        Path | None, typer.Argument(metavar="[FILE]", help="Launch file, or file of limits, to check.")
     ] = None,
     zenoh: Annotated[
-        bool, typer.Option("--zenoh", help="Zenoh's settings, for a file of Zenoh's or ZENOH_CONFIG_OVERRIDE.")
+        bool, typer.Option("--zenoh", help="Print the configuration for Zenoh, for a file or ZENOH_CONFIG_OVERRIDE.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON object.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object.")] = False,
 ) -> None:
-    """Show which topics are thinned or go first on slow links, and check the names against what is there."""
+    """Show which topics have lower rates or priority on slow links, and check their names against the graph."""
     import os
 
     from robolink.cli.shared.output import say, say_json

@@ -10,29 +10,29 @@ import typer
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 
-app = typer.Typer(no_args_is_help=True, help="See and save what cameras publish.")
+app = typer.Typer(no_args_is_help=True, help="Show and save images of cameras.")
 
 Topic = Annotated[
     str,
     typer.Argument(
-        help="Of Image or CompressedImage, such as /camera/image_raw.",
+        help="Topic of type Image or CompressedImage, such as /camera/image_raw.",
         metavar="TOPIC",
         autocompletion=complete.topic_names,
     ),
 ]
-Timeout = Annotated[float | None, seconds("--timeout", "End after so many seconds without an image.")]
+Timeout = Annotated[float | None, seconds("--timeout", "Exit after this number of seconds without an image.")]
 
 
 @app.command("save")
 def save(
     topic: Topic,
     file: Annotated[
-        str, typer.Argument(metavar="[FILE]", help="A .png or .jpg; {} stands for the number, from 1.")
+        str, typer.Argument(metavar="[FILE]", help="File to write, .png or .jpg; {} is replaced by the number, from 1.")
     ] = "image_{}.png",
-    count: Annotated[int, typer.Option("--count", "-c", metavar="N", help="So many images.", min=1, max=10**6)] = 1,
+    count: Annotated[int, typer.Option("--count", "-c", metavar="N", help="Number of images.", min=1, max=10**6)] = 1,
     timeout: Timeout = None,
 ) -> None:
-    """Save the next images of a topic as files. Distances (32FC1, in m) become whole millimetres of 16 bits."""
+    """Save the next images of a topic to files. Depth images (32FC1, in m) are saved in mm, with 16 bits."""
     from robolink.cli.image.verbs import Files, each_image
 
     each_image(topic, count, timeout, Files(file, count).save)
@@ -41,7 +41,7 @@ def save(
 @app.command("show")
 def show(
     topic: Topic,
-    once: Annotated[bool, typer.Option("--once", help="Show one image and end.")] = False,
+    once: Annotated[bool, typer.Option("--once", help="Show one image and exit.")] = False,
     timeout: Timeout = None,
 ) -> None:
     """Show the images of a topic in the terminal, until Ctrl-C; `robolink view` shows them in the browser."""

@@ -9,29 +9,29 @@ import typer
 
 from robolink.cli.shared import complete
 
-app = typer.Typer(no_args_is_help=True, help="See the types of messages, services and actions.")
+app = typer.Typer(no_args_is_help=True, help="Show the definitions of messages, services and actions.")
 
 HEADINGS = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 Type = Annotated[
     str,
     typer.Argument(
-        help="Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist.",
+        help="Type: Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist.",
         metavar="TYPE",
         autocompletion=complete.interface_types,
     ),
 ]
-OnlyMsgs = Annotated[bool, typer.Option("--only-msgs", "-m", help="Only messages.")]
-OnlySrvs = Annotated[bool, typer.Option("--only-srvs", "-s", help="Only services.")]
-OnlyActions = Annotated[bool, typer.Option("--only-actions", "-a", help="Only actions.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON.")]
+OnlyMsgs = Annotated[bool, typer.Option("--only-msgs", "-m", help="List only message types.")]
+OnlySrvs = Annotated[bool, typer.Option("--only-srvs", "-s", help="List only service types.")]
+OnlyActions = Annotated[bool, typer.Option("--only-actions", "-a", help="List only action types.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 @app.command("list")
 def list_interfaces(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
-    """List all types that are installed here or lie in the workspace."""
+    """List all available interface types, those of the workspace too."""
     from robolink.cli.shared.output import say, say_json
 
     found = {kind: _names(kind) for kind in _kinds(only_msgs, only_srvs, only_actions)}
@@ -46,7 +46,7 @@ def list_interfaces(
 def packages(
     only_msgs: OnlyMsgs = False, only_srvs: OnlySrvs = False, only_actions: OnlyActions = False, as_json: AsJson = False
 ) -> None:
-    """List the packages that have types."""
+    """List the packages that provide interfaces."""
     from robolink.cli.shared.output import say, say_json
 
     names = [name for kind in _kinds(only_msgs, only_srvs, only_actions) for name in _names(kind)]
@@ -62,7 +62,7 @@ def package(
     name: Annotated[
         str,
         typer.Argument(
-            help="Such as example_interfaces.", metavar="PACKAGE", autocompletion=complete.interface_packages
+            help="Package, such as example_interfaces.", metavar="PACKAGE", autocompletion=complete.interface_packages
         ),
     ],
     only_msgs: OnlyMsgs = False,
@@ -70,7 +70,7 @@ def package(
     only_actions: OnlyActions = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the types of a package."""
+    """List the interface types of a package."""
     from robolink.cli.shared.output import say, say_json
     from robolink.exceptions import NotFoundError
 
@@ -90,16 +90,18 @@ def show_interface(
     type_: Annotated[
         str,
         typer.Argument(
-            help="Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist; - reads it from standard input.",
+            help="Type: Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist; - reads it from standard input.",
             metavar="TYPE",
             autocompletion=complete.interface_types,
         ),
     ],
-    all_comments: Annotated[bool, typer.Option("--all-comments", help="Comments of nested types too.")] = False,
-    no_comments: Annotated[bool, typer.Option("--no-comments", help="No comments and no empty lines.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON object, with the type's hash.")] = False,
+    all_comments: Annotated[
+        bool, typer.Option("--all-comments", help="Print the comments of nested types too.")
+    ] = False,
+    no_comments: Annotated[bool, typer.Option("--no-comments", help="Print no comments and no empty lines.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object, with the type hash.")] = False,
 ) -> None:
-    """Show what a type is made of."""
+    """Print the definition of an interface."""
     from robolink.cli.interface.show import as_data, lines, type_named
     from robolink.cli.shared.messages import as_json as json_text
     from robolink.cli.shared.output import say
@@ -115,9 +117,9 @@ def show_interface(
 
 @app.command("proto")
 def proto(
-    type_: Type, no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Without quotes around it.")] = False
+    type_: Type, no_quotes: Annotated[bool, typer.Option("--no-quotes", help="Print no quotes around it.")] = False
 ) -> None:
-    """Show a message, request or goal with its defaults, in YAML that topic pub and service call take."""
+    """Print a prototype of a message, request or goal, as YAML for topic pub and service call."""
     from robolink.cli.interface.show import prototype, type_named
     from robolink.cli.shared.output import say
 

@@ -88,42 +88,46 @@ def launch(
         list[str] | None,
         typer.Argument(
             metavar="FILE [ARG:=VALUE]...",
-            help="A launch file, by name, by path, or by package and name; and its arguments.",
+            help="Launch file, by name, by path, or by package and name; then its arguments.",
             autocompletion=launch_words,
             show_default=False,
         ),
     ] = None,
-    duration: Annotated[float | None, seconds("--duration", "End after so many seconds.")] = None,
-    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
-    show_list: Annotated[bool, typer.Option("--list", help="List the launch files that there are.")] = False,
+    duration: Annotated[float | None, seconds("--duration", "Exit after this number of seconds.")] = None,
+    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Workspace to search first.")] = "",
+    show_list: Annotated[bool, typer.Option("--list", help="List the available launch files.")] = False,
     show_args: Annotated[
-        bool, typer.Option("--show-args", "-s", help="List the arguments of a launch file, and start nothing.")
+        bool, typer.Option("--show-args", "-s", help="Print the arguments of a launch file, and start nothing.")
     ] = False,
     validate: Annotated[
-        bool, typer.Option("--validate", help="Find mistakes: make each node, but start nothing.")
+        bool, typer.Option("--validate", help="Check the launch file: create each node, but start nothing.")
     ] = False,
-    graph: Annotated[str, choice("--graph", GRAPH_FORMATS, "Draw nodes and topics as text, and start nothing")] = "",
+    graph: Annotated[
+        str, choice("--graph", GRAPH_FORMATS, "Print a graph of nodes and topics, and start nothing")
+    ] = "",
     json: Annotated[
-        bool, typer.Option("--json", help="Print objects of JSON, one a line: events, or what is asked.")
+        bool, typer.Option("--json", help="Print JSON: events, one object a line, or what another option prints.")
     ] = False,
-    status: Annotated[bool, typer.Option("--status", help="Show what runs in other shells.")] = False,
+    status: Annotated[bool, typer.Option("--status", help="Show the systems that run in other shells.")] = False,
     top: Annotated[
-        bool, typer.Option("--top", help="Show CPU and memory of each node; without a file, of what runs elsewhere.")
+        bool, typer.Option("--top", help="Show CPU and memory of each node; without a launch file, of running systems.")
     ] = False,
-    watch: Annotated[bool, typer.Option("--watch", help="Start a node again when its file is saved.")] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Restart a node when its file is saved.")] = False,
     view: Annotated[bool, typer.Option("--view", help="Show the system in the browser (robolink view).")] = False,
     record: Annotated[
-        str | None, typer.Option("--record", metavar="[FOLDER]", help="Record all that is published into a bag.")
+        str | None, typer.Option("--record", metavar="[FOLDER]", help="Record all topics into a bag.")
     ] = None,
     schema: Annotated[
         bool,
         typer.Option(
-            "--schema", callback=show_launch_schema, is_eager=True, help="Print the JSON schema of the files."
+            "--schema", callback=show_launch_schema, is_eager=True, help="Print the JSON schema of launch files."
         ),
     ] = False,
-    enclave: Annotated[str, enclave_option("Whose keys --record, --view and the launcher have; / by default.")] = "",
+    enclave: Annotated[
+        str, enclave_option("Security enclave of --record, --view and the launcher; / by default.")
+    ] = "",
 ) -> None:
-    """Run a system of nodes until the first of them ends, Ctrl-C, or for a while: `launch follow --duration 60`.
+    """Start the nodes of a launch file, until the first one ends or Ctrl-C: `launch follow --duration 60`.
 
     `launch stop [NAME] [NODE]` and `launch restart [NAME] NODE` are for what runs in another shell; --status shows the
     names. A launch file that is called stop or restart is launched by its path.

@@ -64,16 +64,21 @@ def simulate(
         list[str],
         typer.Argument(
             metavar="NAME|FILE [ARG:=VALUE]...",
-            help="A launch file, by name, by path, or by package and name; and its arguments.",
+            help="Launch file, by name, by path, or by package and name; then its arguments.",
             autocompletion=launch_words,
             show_default=False,
         ),
     ],
-    duration: Annotated[float, seconds("--duration", "Simulated seconds.")] = 60.0,
+    duration: Annotated[float, seconds("--duration", "Duration to simulate, in seconds.")] = 60.0,
     seed: Annotated[
         int | None,
         typer.Option(
-            "--seed", metavar="N", help="Of faults, noise and random numbers.", min=0, max=MOST_SEED, show_default=False
+            "--seed",
+            metavar="N",
+            help="Seed of faults, noise and random numbers.",
+            min=0,
+            max=MOST_SEED,
+            show_default=False,
         ),
     ] = None,
     settings: Annotated[
@@ -83,13 +88,20 @@ def simulate(
     faults: Annotated[
         str,
         typer.Option(
-            "--faults", metavar="NAME|FILE", help="What goes wrong, and when.", autocompletion=complete.faults_files
+            "--faults",
+            metavar="NAME|FILE",
+            help="File that says which faults happen, and when.",
+            autocompletion=complete.faults_files,
         ),
     ] = "",
     repeat: Annotated[
         int,
         typer.Option(
-            "--repeat", metavar="N", help="Run N seeds, from --seed or 0 on, side by side.", min=0, show_default=False
+            "--repeat",
+            metavar="N",
+            help="Run N times in parallel, with seeds from --seed or 0 on.",
+            min=0,
+            show_default=False,
         ),
     ] = 0,
     fail_on: Annotated[
@@ -102,16 +114,14 @@ def simulate(
             autocompletion=lambda: FAIL_ON,
         ),
     ] = None,
-    record: Annotated[
-        str, typer.Option("--record", metavar="FOLDER", help="Record all that is published into a bag.")
-    ] = "",
+    record: Annotated[str, typer.Option("--record", metavar="FOLDER", help="Record all topics into a bag.")] = "",
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print one object of JSON in place of the summary, as the last line.")
+        bool, typer.Option("--json", help="Print a JSON object instead of the summary, as the last line.")
     ] = False,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show all that nodes log, not only warnings.")
+        bool, typer.Option("--verbose", "-v", help="Print all log messages, not only warnings.")
     ] = False,
-    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
+    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Workspace to search first.")] = "",
     schema: Annotated[
         bool,
         typer.Option(
@@ -119,7 +129,7 @@ def simulate(
         ),
     ] = False,
 ) -> None:
-    """Run a system of nodes in virtual time, as fast as it goes; end with a summary and a hash of all it published.
+    """Run a launch file in virtual time, faster than real time; print a summary and a hash of all messages.
 
     Ten minutes of a robot with a bad network: `simulate follow --duration 600 --faults radio`.
 

@@ -25,12 +25,18 @@ def exercise_names() -> list[str]:
         return []
 
 
-Language = Annotated[str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; it is kept.")]
-Name = Annotated[str, typer.Argument(metavar="NAME", help="Its name, number or file.", autocompletion=exercise_names)]
+Language = Annotated[
+    str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; saved for later commands.")
+]
+Name = Annotated[
+    str, typer.Argument(metavar="NAME", help="Exercise, by name, number or file.", autocompletion=exercise_names)
+]
 MaybeName = Annotated[
     str,
     typer.Argument(
-        metavar="[NAME]", help="Its name, number or file; by default the next one.", autocompletion=exercise_names
+        metavar="[NAME]",
+        help="Exercise, by name, number or file; the next one by default.",
+        autocompletion=exercise_names,
     ),
 ]
 
@@ -38,7 +44,7 @@ MaybeName = Annotated[
 @app.callback()
 def list_exercises(
     context: typer.Context,
-    in_page: Annotated[bool, typer.Option("--view", help="Show them in the browser: learn view.")] = False,
+    in_page: Annotated[bool, typer.Option("--view", help="Show the exercises in the browser, as learn view.")] = False,
     language: Language = "",
 ) -> None:
     """Learn by exercises that are checked in a simulated world; without a verb, list them with your progress."""
@@ -65,8 +71,10 @@ def list_them(context: typer.Context, language: Language = "") -> None:
 @app.command("start")
 def start(
     context: typer.Context,
-    folder: Annotated[str, typer.Argument(metavar="[FOLDER]", help="Default: learn_robolink.")] = "",
-    source: Annotated[str, typer.Option("--from", metavar="FOLDER", help="A teacher's exercises.")] = "",
+    folder: Annotated[
+        str, typer.Argument(metavar="[FOLDER]", help="Folder to write into; learn_robolink by default.")
+    ] = "",
+    source: Annotated[str, typer.Option("--from", metavar="FOLDER", help="Folder with a teacher's exercises.")] = "",
     language: Language = "",
 ) -> None:
     """Write the exercises' files into a folder; files that are there stay as they are."""
@@ -80,7 +88,7 @@ def start(
 def check(
     context: typer.Context,
     name: MaybeName = "",
-    all_of_them: Annotated[bool, typer.Option("--all", help="Check all of them, a line for each.")] = False,
+    all_of_them: Annotated[bool, typer.Option("--all", help="Check all exercises, and print a line for each.")] = False,
     language: Language = "",
 ) -> None:
     """Check an exercise; the exit code is 1 if it is not done."""
@@ -109,7 +117,8 @@ def watch(context: typer.Context, name: MaybeName = "", language: Language = "")
 def view(
     context: typer.Context,
     port: Annotated[
-        int | None, typer.Option("--port", metavar="PORT", min=0, max=65535, help="Default 8765, or the next free one.")
+        int | None,
+        typer.Option("--port", metavar="PORT", min=0, max=65535, help="Port; by default 8765 or the next free one."),
     ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
     language: Language = "",
@@ -135,7 +144,7 @@ def hint(context: typer.Context, name: MaybeName = "", language: Language = "") 
 
 @app.command("show")
 def show(context: typer.Context, name: MaybeName = "", language: Language = "") -> None:
-    """Show what an exercise asks for."""
+    """Show the task of an exercise."""
     from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
@@ -144,7 +153,7 @@ def show(context: typer.Context, name: MaybeName = "", language: Language = "") 
 
 @app.command("reset")
 def reset(context: typer.Context, name: Name, language: Language = "") -> None:
-    """Write an exercise's file as it was at the beginning; yours is kept under another name."""
+    """Restore the file of an exercise; yours is saved under another name."""
     from robolink.cli.learn import work
     from robolink.cli.shared import languages
 
@@ -154,8 +163,10 @@ def reset(context: typer.Context, name: Name, language: Language = "") -> None:
 @app.command("new")
 def new(
     context: typer.Context,
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Its name, such as stop_early.")],
-    folder: Annotated[str, typer.Option("--folder", metavar="FOLDER", help="Default: exercises.")] = "",
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the exercise, such as stop_early.")],
+    folder: Annotated[
+        str, typer.Option("--folder", metavar="FOLDER", help="Folder of the exercises; exercises by default.")
+    ] = "",
     language: Language = "",
 ) -> None:
     """Make an exercise of your own, for your students: a text, a given file, a check and a solution."""
@@ -168,7 +179,9 @@ def new(
 @app.command("prove")
 def prove(
     context: typer.Context,
-    folder: Annotated[str, typer.Argument(metavar="[FOLDER]", help="Default: exercises.")] = "",
+    folder: Annotated[
+        str, typer.Argument(metavar="[FOLDER]", help="Folder of the exercises; exercises by default.")
+    ] = "",
     language: Language = "",
 ) -> None:
     """Prove exercises: as given each has to fail, and its solution has to pass; the exit code is 1 if one does not."""

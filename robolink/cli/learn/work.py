@@ -113,7 +113,7 @@ def hint(name: str, language: Language | None) -> None:
 
 
 def show(name: str, language: Language | None) -> None:
-    """Show what an exercise asks for."""
+    """Show the task of an exercise."""
     folder = folder_here(language)
     say_all(task(folder.chosen(name), folder.language))
 

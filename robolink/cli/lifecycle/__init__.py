@@ -9,28 +9,28 @@ import typer
 from robolink.cli.shared import complete
 from robolink.system.terminal import fit
 
-app = typer.Typer(no_args_is_help=True, help="See in which states managed nodes are, and move them on.")
+app = typer.Typer(no_args_is_help=True, help="Show the states of lifecycle nodes, and trigger transitions.")
 
 TRANSITIONS = ["configure", "activate", "deactivate", "cleanup", "shutdown"]
 _NODE = {"metavar": "NODE", "autocompletion": complete.node_names}
 
 Node = Annotated[str, typer.Argument(help="Name of the node, such as /camera.", **_NODE)]
-Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Also nodes that begin with _.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Include hidden nodes, whose names begin with _.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 @app.callback()
 def _noun() -> None:
-    """See in which states managed nodes are, and move them on."""
+    """Show the states of lifecycle nodes, and trigger transitions."""
 
 
 @app.command("nodes")
 def list_nodes(
-    show_all: Annotated[bool, typer.Option("--all", "-a", help="Also those that begin with _.")] = False,
-    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Only say how many there are.")] = False,
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="Include hidden names, which begin with _.")] = False,
+    count: Annotated[bool, typer.Option("--count-nodes", "-c", help="Print only the number.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the managed nodes."""
+    """List the lifecycle nodes."""
     from robolink.cli.lifecycle import ask
     from robolink.cli.shared.output import say, say_json
     from robolink.cli.shared.session import looking
@@ -47,11 +47,11 @@ def list_nodes(
 
 @app.command("get")
 def get(
-    node: Annotated[str, typer.Argument(help="Name of a node; all when left out.", **_NODE)] = "",
+    node: Annotated[str, typer.Argument(help="Name of the node; all nodes by default.", **_NODE)] = "",
     hidden: Hidden = False,
     as_json: AsJson = False,
 ) -> None:
-    """Show the state of a managed node, or of all of them."""
+    """Print the state of a lifecycle node, or of all of them."""
     from robolink.cli.lifecycle import ask
     from robolink.cli.shared.output import say, say_json, tell
     from robolink.cli.shared.session import looking
@@ -75,11 +75,13 @@ def get(
 @app.command("list")
 def list_transitions(
     node: Node,
-    show_all: Annotated[bool, typer.Option("--all", "-a", help="All transitions, whatever the state.")] = False,
+    show_all: Annotated[
+        bool, typer.Option("--all", "-a", help="List all transitions, not only those of the current state.")
+    ] = False,
     hidden: Hidden = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the transitions that a managed node can make now."""
+    """List the transitions that a lifecycle node has in its current state."""
     from robolink.cli.lifecycle import ask
     from robolink.cli.shared.output import say, say_json
     from robolink.cli.shared.session import looking
@@ -101,14 +103,14 @@ def set_state(
     transition: Annotated[
         str,
         typer.Argument(
-            help="Its name or number, such as configure.",
+            help="Transition, such as configure or its number.",
             metavar="TRANSITION",
             autocompletion=lambda incomplete: [each for each in TRANSITIONS if each.startswith(incomplete)],
         ),
     ],
     hidden: Hidden = False,
 ) -> None:
-    """Make a managed node change its state, by the name or number of a transition."""
+    """Trigger a transition of a lifecycle node, by name or number."""
     from robolink.cli.lifecycle import ask
     from robolink.cli.shared.output import say
     from robolink.cli.shared.session import looking

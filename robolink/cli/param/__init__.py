@@ -10,7 +10,7 @@ import typer.core
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 
-app = typer.Typer(no_args_is_help=True, help="See and change the parameters of running nodes.")
+app = typer.Typer(no_args_is_help=True, help="List, get, set, dump and load parameters of nodes.")
 
 PREFIXES = "--param-prefixes"
 
@@ -27,9 +27,9 @@ Node = Annotated[
 Parameter = Annotated[
     str, typer.Argument(help="Name of the parameter.", metavar="PARAMETER", autocompletion=_parameters)
 ]
-Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Also nodes that begin with _.")]
-Timeout = Annotated[float, seconds("--timeout", "Wait at most so long for the node to be there.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
+Hidden = Annotated[bool, typer.Option("--include-hidden-nodes", help="Include hidden nodes, whose names begin with _.")]
+Timeout = Annotated[float, seconds("--timeout", "Longest time to wait for the node, in seconds.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 class ListCommand(typer.core.TyperCommand):
@@ -56,20 +56,25 @@ def each_with_its_flag(args: list[str]) -> list[str]:
 
 @app.callback()
 def _noun() -> None:
-    """See and change the parameters of running nodes."""
+    """List, get, set, dump and load parameters of nodes."""
 
 
 @app.command("list", cls=ListCommand)
 def list_parameters(
     node: Annotated[
-        str, typer.Argument(help="Name of a node; all when left out.", autocompletion=complete.node_names)
+        str, typer.Argument(help="Name of the node; all nodes by default.", autocompletion=complete.node_names)
     ] = "",
     hidden: Hidden = False,
     prefixes: Annotated[
-        list[str] | None, typer.Option(PREFIXES, metavar="PREFIX...", help="Only those below these.")
+        list[str] | None, typer.Option(PREFIXES, metavar="PREFIX...", help="List only parameters with these prefixes.")
     ] = None,
-    show_types: Annotated[bool, typer.Option("--param-type", help="Also show the types.")] = False,
-    pattern: Annotated[str, typer.Option("--filter", metavar="REGEX", help="Only names that begin like this.")] = "",
+    show_types: Annotated[bool, typer.Option("--param-type", help="Print the types too.")] = False,
+    pattern: Annotated[
+        str,
+        typer.Option(
+            "--filter", metavar="REGEX", help="List only parameters whose names match this regular expression."
+        ),
+    ] = "",
     as_json: AsJson = False,
 ) -> None:
     """List the parameters of a node, or of all nodes."""
@@ -84,11 +89,11 @@ def get(
     node: Node,
     parameter: Parameter,
     hidden: Hidden = False,
-    hide_type: Annotated[bool, typer.Option("--hide-type", help="Only the value.")] = False,
+    hide_type: Annotated[bool, typer.Option("--hide-type", help="Print the value without its type.")] = False,
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
 ) -> None:
-    """Show the value of a parameter."""
+    """Print the value of a parameter."""
     from robolink.cli.param import verbs
 
     verbs.show_value(node, parameter, timeout, hide_type=hide_type, as_json=as_json)
@@ -104,7 +109,7 @@ def describe(
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
 ) -> None:
-    """Show what parameters are for, and what they can be."""
+    """Show the descriptors of parameters: type, description, constraints."""
     from robolink.cli.param import verbs
 
     verbs.show_descriptors(node, parameters, timeout, as_json=as_json)
@@ -112,7 +117,7 @@ def describe(
 
 @app.command("dump")
 def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False) -> None:
-    """Write all parameters of a node as a parameter file."""
+    """Print all parameters of a node as a YAML parameter file."""
     from robolink.cli.param import verbs
 
     verbs.dump(node, timeout, as_json=as_json)
@@ -123,7 +128,7 @@ def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: As
 def set_parameter(
     node: Node,
     parameter: Parameter,
-    value: Annotated[str, typer.Argument(help="The value in YAML, such as 0.5, true or [1, 2].", metavar="VALUE")],
+    value: Annotated[str, typer.Argument(help="Value in YAML, such as 0.5, true or [1, 2].", metavar="VALUE")],
     hidden: Hidden = False,
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
@@ -137,15 +142,15 @@ def set_parameter(
 @app.command("load")
 def load(
     node: Node,
-    file: Annotated[str, typer.Argument(help="A parameter file.", metavar="FILE")],
+    file: Annotated[str, typer.Argument(help="Parameter file.", metavar="FILE")],
     hidden: Hidden = False,
     no_wildcard: Annotated[
-        bool, typer.Option("--no-use-wildcard", help="Leave out what the file has for all nodes, as in /**.")
+        bool, typer.Option("--no-use-wildcard", help="Ignore the parameters that the file sets for all nodes (/**).")
     ] = False,
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
 ) -> None:
-    """Set the parameters of a node that a file has for it."""
+    """Load a parameter file into a node."""
     from robolink.cli.param import verbs
 
     raise typer.Exit(verbs.load(node, file, timeout, use_wildcard=not no_wildcard, as_json=as_json))
@@ -155,7 +160,7 @@ def load(
 def delete(
     node: Node, parameter: Parameter, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: AsJson = False
 ) -> None:
-    """Undeclare a parameter; only those of dynamic type can be."""
+    """Delete (undeclare) a parameter, if its type is dynamic."""
     from robolink.cli.param import verbs
 
     raise typer.Exit(verbs.delete(node, parameter, timeout, as_json=as_json))

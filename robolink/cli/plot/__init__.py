@@ -10,25 +10,25 @@ import typer
 from robolink.cli.shared import complete
 from robolink.cli.shared.options import seconds
 
-app = typer.Typer(no_args_is_help=True, help="Draw where robots go, and values over time (needs matplotlib).")
+app = typer.Typer(
+    no_args_is_help=True, help="Plot trajectories of robots, and fields of messages over time (needs matplotlib)."
+)
 
 Out = Annotated[
     Path | None,
-    typer.Option("--out", "-o", metavar="FILE", help="Write a .png, .svg or .pdf instead of opening a window."),
+    typer.Option("--out", "-o", metavar="FILE", help="Write a .png, .svg or .pdf file instead of opening a window."),
 ]
-Duration = Annotated[
-    float | None, seconds("--duration", "Draw after so many seconds of listening; without it, after Ctrl-C.")
-]
+Duration = Annotated[float | None, seconds("--duration", "Seconds to listen; until Ctrl-C by default.")]
 Recording = Annotated[
     Path | None,
-    typer.Option("--bag", metavar="FOLDER|FILE", help="Draw what this bag recorded, instead of listening."),
+    typer.Option("--bag", metavar="FOLDER|FILE", help="Plot this bag instead of live topics."),
 ]
 World = Annotated[
     str,
     typer.Option(
         "--world",
         metavar="NAME",
-        help="Draw over this world; by default the one that is simulated; 'none' for none.",
+        help="World to draw below; the simulated one by default, 'none' for none.",
         autocompletion=complete.world_files,
     ),
 ]
@@ -40,7 +40,7 @@ def plot_odometry(
         list[str] | None,
         typer.Argument(
             metavar="TOPIC...",
-            help="Such as /odom /ground_truth; of a bag by default all.",
+            help="Topics such as /odom /ground_truth; all of a bag by default.",
             autocompletion=complete.topic_names,
         ),
     ] = None,
@@ -49,7 +49,7 @@ def plot_odometry(
     world: World = "",
     bag: Recording = None,
 ) -> None:
-    """Draw the way of whatever messages say where something is: Odometry, PoseStamped and the like."""
+    """Plot the trajectories of Odometry, PoseStamped and other messages with a pose."""
     from robolink.cli.plot import drawing, messages
 
     drawing.plot_trajectories(topics or [], drawing.POSES, world, messages.Wish(out, duration, bag))
@@ -61,7 +61,7 @@ def plot_path(
         list[str] | None,
         typer.Argument(
             metavar="TOPIC...",
-            help="Of nav_msgs/msg/Path, such as /plan; of a bag by default all.",
+            help="Topics of type nav_msgs/msg/Path, such as /plan; all of a bag by default.",
             autocompletion=complete.topic_names,
         ),
     ] = None,
@@ -70,7 +70,7 @@ def plot_path(
     world: World = "",
     bag: Recording = None,
 ) -> None:
-    """Draw the paths that were published last, over the world."""
+    """Plot the latest nav_msgs/msg/Path of topics, over the world."""
     from robolink.cli.plot import drawing, messages
 
     drawing.plot_trajectories(topics or [], drawing.PATHS, world, messages.Wish(out, duration, bag))
@@ -82,7 +82,7 @@ def plot_topic(
         list[str],
         typer.Argument(
             metavar="TOPIC.FIELD...",
-            help="Such as /odom.twist.twist.linear.x or /cmd_vel/linear/x.",
+            help="Fields such as /odom.twist.twist.linear.x or /cmd_vel/linear/x.",
             autocompletion=complete.topic_names,
         ),
     ],
@@ -90,7 +90,7 @@ def plot_topic(
     duration: Duration = None,
     bag: Recording = None,
 ) -> None:
-    """Draw values over time."""
+    """Plot fields of messages over time."""
     from robolink.cli.plot import drawing, messages
 
     drawing.plot_fields(fields, messages.Wish(out, duration, bag))

@@ -19,19 +19,23 @@ RACES = ("line", "maze", "follow")
 @app.command()
 def race(
     name: Annotated[
-        str, typer.Argument(metavar="line|maze|follow", help="The race.", autocompletion=lambda: list(RACES))
+        str, typer.Argument(metavar="line|maze|follow", help="Name of the race.", autocompletion=lambda: list(RACES))
     ],
     files: Annotated[
         list[str],
-        typer.Argument(metavar="FILE...", help="Programs, names of nodes, or folders of students."),
+        typer.Argument(metavar="FILE...", help="Programs, nodes by name, or folders of students."),
     ],
     seed: Annotated[
-        int, typer.Option("--seed", metavar="N", help="Of the world and of all chance.", min=0, max=MOST_SEED)
+        int,
+        typer.Option("--seed", metavar="N", help="Seed of the world and of all random numbers.", min=0, max=MOST_SEED),
     ] = 1,
-    as_json: Annotated[bool, typer.Option("--json", help="JSON: a list with an object for each program.")] = False,
-    as_csv: Annotated[bool, typer.Option("--csv", help="CSV, for a spreadsheet.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON: a list with an object for each program.")
+    ] = False,
+    as_csv: Annotated[bool, typer.Option("--csv", help="Print CSV, for a spreadsheet.")] = False,
     language: Annotated[
-        str, typer.Option("--language", metavar="en|pt", help="English or Portuguese; default: as robolink learn.")
+        str,
+        typer.Option("--language", metavar="en|pt", help="English or Portuguese; by default that of robolink learn."),
     ] = "",
 ) -> None:
     """Race programs in a simulated world, each alone, in virtual time; print a table with a hash of each run.

@@ -91,7 +91,7 @@ def run(
         str,
         typer.Argument(
             metavar="NAME|FILE[:FUNCTION]|PACKAGE EXECUTABLE",
-            help="The node to run.",
+            help="Node to run.",
             autocompletion=complete.runnable_nodes,
         ),
     ] = "",
@@ -99,7 +99,7 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="[ARGS]...",
-            help="For the program; after -- whatever they are.",
+            help="Arguments of the program; all words after -- are.",
             autocompletion=complete.package_executables,
         ),
     ] = None,
@@ -111,20 +111,21 @@ def run(
     ] = None,
     remappings: Annotated[
         list[str] | None,
-        typer.Option("--remap", "-r", metavar="FROM:=TO", help="Rename a topic or service."),
+        typer.Option("--remap", "-r", metavar="FROM:=TO", help="Remap a topic or service."),
     ] = None,
-    name: Annotated[str, typer.Option("--name", help="Another name for the node.")] = "",
-    namespace: Annotated[str, typer.Option("--namespace", help="The node's namespace.")] = "",
+    name: Annotated[str, typer.Option("--name", help="Name of the node, instead of its own.")] = "",
+    namespace: Annotated[str, typer.Option("--namespace", help="Namespace of the node.")] = "",
     params_files: Annotated[
-        list[str] | None, typer.Option("--params-file", metavar="FILE", help="Parameters in a YAML file.")
+        list[str] | None, typer.Option("--params-file", metavar="FILE", help="YAML parameter file.")
     ] = None,
-    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Where to look first.")] = "",
+    workspace: Annotated[str, typer.Option("--workspace", metavar="FOLDER", help="Workspace to search first.")] = "",
     prefix: Annotated[
-        str | None, typer.Option("--prefix", metavar="COMMAND", help="What runs it, such as 'gdb -ex run --args'.")
+        str | None,
+        typer.Option("--prefix", metavar="COMMAND", help="Command to run the node with, such as 'gdb -ex run --args'."),
     ] = None,
-    show_list: Annotated[bool, typer.Option("--list", help="List the nodes that there are.")] = False,
+    show_list: Annotated[bool, typer.Option("--list", help="List the available nodes.")] = False,
 ) -> None:
-    """Run a node: by name, from a file, or an executable of a package. All from --ros-args on is the node's."""
+    """Run a node: by name, from a file, or an executable of a package, with ROS arguments after --ros-args."""
     from robolink.cli.running_nodes import runner
 
     if show_list:

@@ -13,17 +13,17 @@ from robolink.cli.shared.output import say, tell
 if TYPE_CHECKING:
     from robolink.security.keystore import Keystore
 
-app = typer.Typer(no_args_is_help=True, help="Make keys for nodes, and say what they may publish, hear and call.")
+app = typer.Typer(no_args_is_help=True, help="Create keys, certificates and permissions for nodes (SROS 2).")
 
 Root = Annotated[Path, typer.Argument(metavar="ROOT", help="Root path of the keystore.")]
 Name = Annotated[str, typer.Argument(metavar="NAME", help="Name of the enclave, such as /robot/driver.")]
 PolicyFile = Annotated[Path, typer.Argument(metavar="POLICY_FILE_PATH", help="Path of the policy's XML file.")]
-Days = Annotated[float, typer.Option("--days", metavar="DAYS", help="How long the certificate is valid.")]
+Days = Annotated[float, typer.Option("--days", metavar="DAYS", help="Days for which the certificate is valid.")]
 
 
 @app.callback()
 def _noun() -> None:
-    """Make keys for nodes, and say what they may publish, hear and call."""
+    """Create keys, certificates and permissions for nodes (SROS 2)."""
 
 
 @app.command("create_keystore")
@@ -37,15 +37,17 @@ def create_enclave(
     root: Root,
     name: Name,
     days: Days = 3650,
-    renew: Annotated[bool, typer.Option("--renew", help="A new key and certificate for one that is there.")] = False,
+    renew: Annotated[
+        bool, typer.Option("--renew", help="Renew the key and certificate of an existing enclave.")
+    ] = False,
 ) -> None:
-    """Create an enclave: its key, its certificate, and permissions for everything."""
+    """Create an enclave: a key, a certificate, and permissions for everything."""
     _keystore(root).create_enclave(name, days=days, renew=renew)
 
 
 @app.command("create_permission")
 def create_permission(root: Root, name: Name, policy: PolicyFile) -> None:
-    """Create the permissions of an enclave from a policy."""
+    """Create the permissions of an enclave from a policy file."""
     from robolink.security.keystore import profiles_of
 
     _keystore(root).permit_profiles(name, profiles_of(policy, name))
@@ -61,21 +63,27 @@ def list_enclaves(root: Root) -> None:
 
 @app.command("withdraw")
 def withdraw(root: Root, name: Name) -> None:
-    """Deny an enclave everything from now on."""
+    """Revoke all permissions of an enclave."""
     _keystore(root).withdraw(name)
 
 
 @app.command("class", cls=ListedOptions)
 def make_class(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder of the class.")] = Path("class"),
-    students: Annotated[int, typer.Option("--students", metavar="N", help="Make keys for as many students.")] = 0,
+    students: Annotated[
+        int, typer.Option("--students", metavar="N", help="Number of students to create keys for.")
+    ] = 0,
     turn: Annotated[
-        str, typer.Option("--turn", metavar="STUDENT", help="Let one student drive: its number, or 'none'.")
+        str, typer.Option("--turn", metavar="STUDENT", help="Number of the student who may drive, or 'none'.")
     ] = "",
-    see: Annotated[list[str] | None, typer.Option("--see", help="Topics of the robot that students see.")] = None,
-    drive: Annotated[list[str] | None, typer.Option("--drive", help="Topics by which the robot is driven.")] = None,
+    see: Annotated[
+        list[str] | None, typer.Option("--see", help="Topics of the robot that students may subscribe to.")
+    ] = None,
+    drive: Annotated[
+        list[str] | None, typer.Option("--drive", help="Topics of the commands that drive the robot.")
+    ] = None,
 ) -> None:
-    """Make a folder of keys for each student of a class, or give one of them its turn to drive the robot."""
+    """Create keys for each student of a class, or let one of them drive the robot."""
     import os
 
     from robolink.networks.asked import domain_id
@@ -103,14 +111,12 @@ def make_class(
 def generate_artifacts(
     root: Annotated[
         Path | None,
-        typer.Option("--keystore-root-path", "-k", help="Root path of the keystore; else ROS_SECURITY_KEYSTORE."),
+        typer.Option("--keystore-root-path", "-k", help="Root path of the keystore; ROS_SECURITY_KEYSTORE by default."),
     ] = None,
-    enclaves: Annotated[list[str] | None, typer.Option("--enclaves", "-e", help="Enclaves, one or several.")] = None,
-    policies: Annotated[
-        list[Path] | None, typer.Option("--policy-files", "-p", help="Policies, one or several files.")
-    ] = None,
+    enclaves: Annotated[list[str] | None, typer.Option("--enclaves", "-e", help="Names of enclaves.")] = None,
+    policies: Annotated[list[Path] | None, typer.Option("--policy-files", "-p", help="Policy files.")] = None,
 ) -> None:
-    """Generate keys and permissions from a list of enclaves and policies."""
+    """Create keys and permissions from enclaves and policy files."""
     import os
 
     from robolink.exceptions import SecurityError
@@ -127,7 +133,7 @@ def generate_artifacts(
 
 @app.command("generate_policy")
 def generate_policy(policy: PolicyFile) -> None:
-    """Generate a policy from the nodes that run: it allows what they do now."""
+    """Write a policy that allows what the running nodes use now."""
     from robolink.cli.security.observed import profiles_of_graph
     from robolink.cli.shared.session import looking
     from robolink.security.generating import merged, write_policy

@@ -11,7 +11,7 @@ from robolink.cli.shared import complete
 if TYPE_CHECKING:
     from robolink.context import Context
 
-app = typer.Typer(no_args_is_help=True, help="See which services there are, and call them.")
+app = typer.Typer(no_args_is_help=True, help="List services, call them, print requests and responses.")
 
 Service = Annotated[
     str,
@@ -19,24 +19,24 @@ Service = Annotated[
         help="Name of the service, such as /reset.", metavar="SERVICE", autocompletion=complete.service_names
     ),
 ]
-Hidden = Annotated[bool, typer.Option("--include-hidden-services", help="Also those that begin with _.")]
-AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs.")]
-Count = Annotated[bool, typer.Option("--count-services", "-c", help="Only say how many there are.")]
+Hidden = Annotated[bool, typer.Option("--include-hidden-services", help="Include hidden names, which begin with _.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Count = Annotated[bool, typer.Option("--count-services", "-c", help="Print only the number.")]
 
 
 @app.callback()
 def _noun() -> None:
-    """See which services there are, and call them."""
+    """List services, call them, print requests and responses."""
 
 
 @app.command("list")
 def list_services(
-    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Also show the types.")] = False,
+    show_types: Annotated[bool, typer.Option("--show-types", "-t", help="Print the types too.")] = False,
     count: Count = False,
     hidden: Hidden = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the services that are served or called."""
+    """List the services that have servers or clients."""
     from robolink.cli.shared.graph import show_names
     from robolink.cli.shared.session import looking
 
@@ -47,7 +47,7 @@ def list_services(
 
 @app.command("type")
 def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False) -> None:
-    """Show the type of a service."""
+    """Print the type of a service."""
     from robolink.cli.shared.graph import show_types
     from robolink.cli.shared.session import looking
 
@@ -61,13 +61,17 @@ def show_type(service: Service, hidden: Hidden = False, as_json: AsJson = False)
 def find(
     type_: Annotated[
         str,
-        typer.Argument(help="Trigger or std_srvs/srv/Trigger.", metavar="TYPE", autocompletion=complete.service_types),
+        typer.Argument(
+            help="Service type, such as std_srvs/srv/Trigger or Trigger.",
+            metavar="TYPE",
+            autocompletion=complete.service_types,
+        ),
     ],
     count: Count = False,
     hidden: Hidden = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the services of a type."""
+    """List the services of a service type."""
     from robolink.cli.shared.graph import show_of_type
     from robolink.cli.shared.session import looking
 
@@ -79,10 +83,10 @@ def find(
 @app.command("info")
 def show_info(
     service: Service,
-    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Also show who serves and calls it.")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print details of each server and client.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Show a service's type, and how many serve and call it."""
+    """Show the type of a service, and the number of its servers and clients."""
     from robolink.cli.service.verbs import show
 
     show(service, verbose=verbose, as_json=as_json)
@@ -95,23 +99,27 @@ def call_service(
     type_: Annotated[
         str,
         typer.Argument(
-            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=complete.type_of_service
+            help="Its type; looked up on the network by default.",
+            metavar="[TYPE]",
+            autocompletion=complete.type_of_service,
         ),
     ] = "",
     values: Annotated[
-        str | None, typer.Argument(help="The request in YAML, such as '{data: true}'.", metavar="[VALUES]")
+        str | None, typer.Argument(help="Request in YAML, such as '{data: true}'.", metavar="[VALUES]")
     ] = None,
     from_stdin: Annotated[bool, typer.Option("--stdin", help="Read the request from standard input.")] = False,
-    rate: Annotated[float | None, typer.Option("--rate", "-r", metavar="HZ", help="Call again and again.")] = None,
+    rate: Annotated[
+        float | None, typer.Option("--rate", "-r", metavar="HZ", help="Repeat the call at this rate, in Hz.")
+    ] = None,
     timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", help="Give up after so many seconds without an answer.")
+        float, typer.Option("--timeout", metavar="S", help="Longest time to wait for a response, in seconds.")
     ] = 5.0,
     node_name: Annotated[
-        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node that calls.")
+        str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node of this command.")
     ] = "",
-    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each call.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object for each call.")] = False,
 ) -> None:
-    """Call a service and show what it answers."""
+    """Call a service and print the response."""
     from robolink.cli.service import verbs
     from robolink.cli.shared.messages import is_type, read_stdin
 
@@ -132,21 +140,30 @@ def echo_events(
     type_: Annotated[
         str,
         typer.Argument(
-            help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=complete.type_of_service
+            help="Its type; looked up on the network by default.",
+            metavar="[TYPE]",
+            autocompletion=complete.type_of_service,
         ),
     ] = "",
-    once: Annotated[bool, typer.Option("--once", help="Show one event and end.")] = False,
-    csv: Annotated[bool, typer.Option("--csv", help="All values of an event in a line, between commas.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A line of JSON for each event.")] = False,
-    full_length: Annotated[bool, typer.Option("--full-length", "-f", help="Shorten nothing.")] = False,
+    once: Annotated[bool, typer.Option("--once", help="Print one event and exit.")] = False,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Print the fields of an event in one line, separated by commas.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object for each event.")] = False,
+    full_length: Annotated[
+        bool, typer.Option("--full-length", "-f", help="Print arrays and strings at full length.")
+    ] = False,
     length: Annotated[
-        int, typer.Option("--truncate-length", "-l", metavar="N", help="Shorten what is longer.", min=0)
+        int,
+        typer.Option(
+            "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
+        ),
     ] = 128,
-    no_arr: Annotated[bool, typer.Option("--no-arr", help="Of sequences, show only type and length.")] = False,
-    no_str: Annotated[bool, typer.Option("--no-str", help="Of texts, show only the length.")] = False,
-    flow: Annotated[bool, typer.Option("--flow-style", help="YAML in one line: {a: [1, 2]}.")] = False,
+    no_arr: Annotated[bool, typer.Option("--no-arr", help="Print only type and length of arrays.")] = False,
+    no_str: Annotated[bool, typer.Option("--no-str", help="Print only the length of strings.")] = False,
+    flow: Annotated[bool, typer.Option("--flow-style", help="Print YAML in flow style, on one line.")] = False,
 ) -> None:
-    """Show what a service and its clients say to each other, where introspection is on; until Ctrl-C."""
+    """Print requests and responses of a service whose introspection is enabled, until Ctrl-C."""
     from robolink.cli.service import verbs
     from robolink.cli.shared.messages import Style
 

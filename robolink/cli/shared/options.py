@@ -61,5 +61,5 @@ def enclave(text: str) -> Any:
     return typer.Option("--enclave", metavar="NAME", help=text, callback=check)
 
 
-Enclave = Annotated[str, enclave("Enclave whose keys and rights it has; / by default.")]
+Enclave = Annotated[str, enclave("Security enclave of the node; / by default.")]
 """Option of commands that have one session."""

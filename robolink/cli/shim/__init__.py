@@ -26,15 +26,16 @@ def _checked(name: str) -> str:
 @app.command("shim")
 def shim(
     name: Annotated[
-        str, typer.Argument(metavar="ros2|colcon|launch_test", help="The command's name.", callback=_checked)
+        str, typer.Argument(metavar="ros2|colcon|launch_test", help="Name of the command.", callback=_checked)
     ],
-    remove: Annotated[bool, typer.Option("--remove", help="Take it away again.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Also where a real one would be hidden.")] = False,
+    remove: Annotated[bool, typer.Option("--remove", help="Remove the command.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Write it even if it hides a real one.")] = False,
     folder: Annotated[
-        Path | None, typer.Option("--folder", metavar="FOLDER", help="Where; by default where robolink's command is.")
+        Path | None,
+        typer.Option("--folder", metavar="FOLDER", help="Folder of the command; that of robolink by default."),
     ] = None,
 ) -> None:
-    """Write a command ros2, which is robolink by another name, colcon, whose build does nothing, or launch_test."""
+    """Install a command: ros2, which runs robolink; colcon, whose build does nothing; or launch_test."""
     from robolink.cli.shim import writing
 
     place = folder or writing.scripts_folder()

@@ -8,23 +8,25 @@ import typer
 
 from robolink.cli.shared.options import seconds
 
-app = typer.Typer(no_args_is_help=True, help="See where frames are in each other.")
+app = typer.Typer(no_args_is_help=True, help="Show transforms between frames, and the tree of frames.")
 
-AsJson = Annotated[bool, typer.Option("--json", help="JSON, for programs; of what goes on, a line each.")]
-TfTopic = Annotated[str, typer.Option("--tf-topic", metavar="TOPIC", help="Where moving transforms come from.")]
-StaticTopic = Annotated[str, typer.Option("--tf-static-topic", metavar="TOPIC", help="Where static ones come from.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; for messages and rates, one object a line.")]
+TfTopic = Annotated[str, typer.Option("--tf-topic", metavar="TOPIC", help="Topic of the transforms.")]
+StaticTopic = Annotated[str, typer.Option("--tf-static-topic", metavar="TOPIC", help="Topic of the static transforms.")]
 
 
 @app.command("echo")
 def echo_transform(
-    source: Annotated[str, typer.Argument(metavar="SOURCE_FRAME", help="In this frame, such as map ...")],
-    target: Annotated[str, typer.Argument(metavar="TARGET_FRAME", help="... where is this one, such as base_link?")],
-    rate: Annotated[float, typer.Argument(metavar="[RATE]", help="Times a second.")] = 1.0,
-    once: Annotated[bool, typer.Option("--once", help="Show one transform and end.")] = False,
-    timeout: Annotated[float | None, seconds("--timeout", "Give up if there is none after so many seconds.")] = None,
+    source: Annotated[str, typer.Argument(metavar="SOURCE_FRAME", help="Reference frame, such as map.")],
+    target: Annotated[
+        str, typer.Argument(metavar="TARGET_FRAME", help="Frame whose pose is printed, such as base_link.")
+    ],
+    rate: Annotated[float, typer.Argument(metavar="[RATE]", help="Rate of the output, in Hz.")] = 1.0,
+    once: Annotated[bool, typer.Option("--once", help="Print one transform and exit.")] = False,
+    timeout: Annotated[float | None, seconds("--timeout", "Longest time to wait for a transform, in seconds.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show where TARGET_FRAME is in SOURCE_FRAME, again and again. Arguments and output are those of tf2_echo."""
+    """Print the transform between two frames, as tf2_echo does: the pose of TARGET_FRAME in SOURCE_FRAME."""
     from robolink.cli.tf import watch
 
     watch.echo(source, target, watch.Wish(rate, once, timeout, as_json))
@@ -33,12 +35,17 @@ def echo_transform(
 @app.command("monitor")
 def monitor_transforms(
     ctx: typer.Context,
-    source: Annotated[str, typer.Argument(metavar="[SOURCE_FRAME]", help="Only the chain from this frame ...")] = "",
-    target: Annotated[str, typer.Argument(metavar="[TARGET_FRAME]", help="... to this one.")] = "",
-    period: Annotated[float, typer.Option("--period", metavar="S", help="Seconds between two reports.", min=0.1)] = 2.0,
+    source: Annotated[
+        str,
+        typer.Argument(metavar="[SOURCE_FRAME]", help="First frame of the chain to monitor; all frames by default."),
+    ] = "",
+    target: Annotated[str, typer.Argument(metavar="[TARGET_FRAME]", help="Last frame of the chain.")] = "",
+    period: Annotated[
+        float, typer.Option("--period", metavar="S", help="Period of the reports, in seconds.", min=0.1)
+    ] = 2.0,
     as_json: AsJson = False,
 ) -> None:
-    """Show who publishes transforms, how often, and how late they come, until Ctrl-C."""
+    """Print publishers, rates and delays of transforms, until Ctrl-C."""
     from robolink.cli.tf import watch
 
     if source and not target:
@@ -50,14 +57,14 @@ def monitor_transforms(
 def show_tree(
     ctx: typer.Context,
     wait: Annotated[
-        float, typer.Option("--wait-time", "-t", metavar="S", help="Listen for so many seconds.", min=0.05, max=1e6)
+        float, typer.Option("--wait-time", "-t", metavar="S", help="Seconds to listen.", min=0.05, max=1e6)
     ] = 1.0,
     tf_topic: TfTopic = "/tf",
     static_topic: StaticTopic = "/tf_static",
-    dot: Annotated[bool, typer.Option("--dot", help="As a graph for Graphviz: tree --dot | dot -Tpdf.")] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="Print a graph for Graphviz: tree --dot | dot -Tpdf.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Show all frames as a tree: rates, ages, publishers, and what is wrong with it."""
+    """Print the tree of frames, with rates, ages, publishers and problems."""
     from robolink.cli.tf import tree
 
     if dot and as_json:

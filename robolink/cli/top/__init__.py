@@ -11,21 +11,24 @@ app = typer.Typer()
 
 @app.command("top")
 def top(
-    once: Annotated[bool, typer.Option("--once", help="Measure for one interval, print that, and end.")] = False,
+    once: Annotated[bool, typer.Option("--once", help="Measure one interval, print it and exit.")] = False,
     every: Annotated[float, typer.Option("--every", "-e", min=0.1, help="Interval in seconds.")] = 1.0,
     sort: Annotated[
-        str, typer.Option("--sort", "-s", help="Order: name, cpu, memory, rate, bandwidth, age or lost.")
+        str, typer.Option("--sort", "-s", help="Sort by name, cpu, memory, rate, bandwidth, age or lost.")
     ] = "name",
     filter_: Annotated[
-        str, typer.Option("--filter", "-f", metavar="TEXT", help="Only nodes and topics with this in name or type.")
+        str,
+        typer.Option(
+            "--filter", "-f", metavar="TEXT", help="Show only nodes and topics with this text in their name or type."
+        ),
     ] = "",
-    show_all: Annotated[bool, typer.Option("--all", "-a", help="Also names that begin with _.")] = False,
+    show_all: Annotated[bool, typer.Option("--all", "-a", help="Include hidden names, which begin with _.")] = False,
     no_traffic: Annotated[
-        bool, typer.Option("--no-traffic", help="Subscribe to nothing: no rates, bandwidths, ages and losses.")
+        bool, typer.Option("--no-traffic", help="Do not subscribe: show no rate, bandwidth, age and loss.")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="A JSON object on a line for each interval.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object for each interval.")] = False,
 ) -> None:
-    """Show nodes with CPU and memory, topics with rate, bandwidth, age and loss, until q or Ctrl-C."""
+    """Show CPU and memory of nodes; rate, bandwidth, age and loss of topics; until q or Ctrl-C."""
     from robolink.cli.top import screen
     from robolink.cli.top.table import ORDERS, View
     from robolink.exceptions import nearest

@@ -8,7 +8,7 @@ import typer
 
 from robolink.cli.topic import options as opt
 
-app = typer.Typer(no_args_is_help=True, help="See and send what nodes publish.")
+app = typer.Typer(no_args_is_help=True, help="List topics, print and publish messages, measure rates.")
 
 
 @app.command("list")
@@ -19,7 +19,7 @@ def list_topics(
     hidden: opt.Hidden = False,
     as_json: opt.AsJson = False,
 ) -> None:
-    """List the topics that are published or subscribed to."""
+    """List the topics that have publishers or subscriptions."""
     from robolink.cli.topic import listing
 
     listing.list_topics(types=types, count=count, verbose=verbose, hidden=hidden, json=as_json)
@@ -31,7 +31,7 @@ def show_info(
     verbose: opt.Verbose = False,
     as_json: opt.AsJson = False,
 ) -> None:
-    """Show a topic's type and who uses it."""
+    """Show the type of a topic, and its publishers and subscriptions."""
     from robolink.cli.topic import listing
 
     listing.show_info(topic, verbose=verbose, json=as_json)
@@ -39,7 +39,7 @@ def show_info(
 
 @app.command("type")
 def show_type(topic: opt.Topic, as_json: opt.AsJson = False) -> None:
-    """Show a topic's type."""
+    """Print the type of a topic."""
     from robolink.cli.topic import listing
 
     listing.show_type(topic, json=as_json)
@@ -52,7 +52,7 @@ def find(
     hidden: opt.Hidden = False,
     as_json: opt.AsJson = False,
 ) -> None:
-    """List the topics of a type."""
+    """List the topics of a message type."""
     from robolink.cli.topic import listing
 
     listing.find_topics(type_, count=count, hidden=hidden, json=as_json)
@@ -67,7 +67,7 @@ def hz(
     sim_time: opt.SimTime = False,
     as_json: opt.AsJson = False,
 ) -> None:
-    """Show how often messages come, once a second."""
+    """Print the publishing rate of topics, once a second."""
     from robolink.cli.topic import meters
 
     meters.hz(topics, meters.Flags(window, as_json, sim_time and not wall_time), filter_)
@@ -80,7 +80,7 @@ def bw(
     sim_time: opt.SimTime = False,
     as_json: opt.AsJson = False,
 ) -> None:
-    """Show how many bytes come, once a second."""
+    """Print the bandwidth of topics, once a second."""
     from robolink.cli.topic import meters
 
     meters.bw(topics, meters.Flags(window, as_json, sim_time))
@@ -90,7 +90,7 @@ def bw(
 def delay(
     topic: opt.Topic, window: int = opt.window(10_000), sim_time: opt.SimTime = False, as_json: opt.AsJson = False
 ) -> None:
-    """Show how long after the stamp in their header messages come, once a second."""
+    """Print the delay of messages since the stamp in their header, once a second."""
     from robolink.cli.topic import meters
 
     meters.delay(topic, meters.Flags(window, as_json, sim_time))
@@ -126,7 +126,7 @@ def echo_messages(
     qos_liveliness: opt.Liveliness = "",
     qos_lease: opt.Lease = None,
 ) -> None:
-    """Show what is published on a topic, until Ctrl-C."""
+    """Print the messages of a topic, until Ctrl-C."""
     from robolink.cli.shared.messages import Style
     from robolink.cli.topic.echo import Format, Wish, run
 
@@ -166,7 +166,7 @@ def publish(
     qos_liveliness: opt.Liveliness = "",
     qos_lease: opt.Lease = None,
 ) -> None:
-    """Publish messages on a topic, until Ctrl-C. `header: auto` and `stamp: now` become the time of sending."""
+    """Publish messages to a topic, until Ctrl-C. `header: auto` and `stamp: now` become the time of sending."""
     from robolink.cli.topic.pub import Wish, run
 
     if values is None and opt.are_values(type_):

@@ -36,7 +36,7 @@ _TYPE = re.compile(r"(?:[A-Za-z]\w*[/.])?(?:msg[/.])?[A-Za-z]\w*", re.ASCII)
 def list_topics(
     *, types: bool = False, count: bool = False, verbose: bool = False, hidden: bool = False, json: bool = False
 ) -> None:
-    """List the topics that are published or subscribed to."""
+    """List the topics that have publishers or subscriptions."""
     with looking() as context:
         found = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
     topics = names_and_types(found)

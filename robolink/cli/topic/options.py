@@ -17,7 +17,13 @@ def _flag(*names: str, help: str) -> Any:  # noqa: A002 - typer's word
 def window(default: int, least: int = 1) -> int:
     """Return the option for the number of messages that are evaluated: `default`, and `least` at least."""
     return typer.Option(  # type: ignore[no-any-return]
-        default, "--window", "-w", metavar="N", help="So many messages, the last, are looked at.", min=least, max=10**7
+        default,
+        "--window",
+        "-w",
+        metavar="N",
+        help="Window size: number of the latest messages to evaluate.",
+        min=least,
+        max=10**7,
     )
 
 
@@ -38,70 +44,102 @@ _TOPIC = {"metavar": "TOPIC", "autocompletion": complete.topic_names}
 Topic = Annotated[str, typer.Argument(help="Name of the topic, such as /scan.", **_TOPIC)]
 Topics = Annotated[list[str], typer.Argument(help="Names of topics, such as /scan.", **_TOPIC)]
 Type = Annotated[
-    str, typer.Argument(help="A type, such as Twist.", metavar="TYPE", autocompletion=complete.message_types)
+    str,
+    typer.Argument(
+        help="Message type, such as geometry_msgs/msg/Twist or Twist.",
+        metavar="TYPE",
+        autocompletion=complete.message_types,
+    ),
 ]
 TypeOfTopic = Annotated[
     str,
-    typer.Argument(help="Its type; found out when left out.", metavar="[TYPE]", autocompletion=complete.type_of_topic),
+    typer.Argument(
+        help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=complete.type_of_topic
+    ),
 ]
 TypeOrValues = Annotated[
     str,
     typer.Argument(
-        help="Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist; found out when the topic is there.",
+        help="Message type: Twist, geometry_msgs/Twist or geometry_msgs/msg/Twist; that of the topic by default.",
         metavar="[TYPE]",
         autocompletion=complete.type_of_topic,
     ),
 ]
-Values = Annotated[str | None, typer.Argument(help="YAML, such as '{linear: {x: 0.3}}'.", metavar="[VALUES]")]
-
-Hidden = Annotated[bool, _flag("--include-hidden-topics", help="Also those that begin with _.")]
-Count = Annotated[bool, _flag("--count-topics", "-c", help="Only say how many there are.")]
-ShowTypes = Annotated[bool, _flag("--show-types", "-t", help="Also show the types.")]
-Verbose = Annotated[bool, _flag("--verbose", "-v", help="All that is known of publishers and subscriptions.")]
-AsJson = Annotated[bool, _flag("--json", help="JSON, for programs; of what goes on, a line each.")]
-SimTime = Annotated[bool, _flag("--use-sim-time", "-s", help="Take the time from /clock.")]
-WallTime = Annotated[bool, _flag("--wall-time", help="This computer's time, even with -s.")]
-Filter = Annotated[
-    str, typer.Option("--filter", metavar="EXPR", help="Only messages for which this holds: 'm.linear.x > 0.2'.")
+Values = Annotated[
+    str | None, typer.Argument(help="Values of the message in YAML, such as '{linear: {x: 0.3}}'.", metavar="[VALUES]")
 ]
-NodeName = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node that this makes.")]
+
+Hidden = Annotated[bool, _flag("--include-hidden-topics", help="Include hidden names, which begin with _.")]
+Count = Annotated[bool, _flag("--count-topics", "-c", help="Print only the number.")]
+ShowTypes = Annotated[bool, _flag("--show-types", "-t", help="Print the types too.")]
+Verbose = Annotated[
+    bool, _flag("--verbose", "-v", help="Print details of each publisher and subscription: node, type hash, GID, QoS.")
+]
+AsJson = Annotated[bool, _flag("--json", help="Print JSON; for messages and rates, one object a line.")]
+SimTime = Annotated[bool, _flag("--use-sim-time", "-s", help="Use simulation time, from /clock.")]
+WallTime = Annotated[bool, _flag("--wall-time", help="Measure with the system clock, even with -s.")]
+Filter = Annotated[
+    str,
+    typer.Option(
+        "--filter",
+        metavar="EXPR",
+        help="Use only messages m that match this Python expression, such as 'm.linear.x > 0.2'.",
+    ),
+]
+NodeName = Annotated[str, typer.Option("--node-name", "-n", metavar="NAME", help="Name of the node of this command.")]
 
 # topic echo
 
-OneMessage = Annotated[bool, _flag("--once", help="Show one message and end.")]
-Timeout = Annotated[float | None, seconds("--timeout", "End after so many seconds.")]
-Field = Annotated[str, typer.Option("--field", metavar="A.B", help="Show only this field: linear.x, 'ranges[0]'.")]
-Csv = Annotated[bool, _flag("--csv", help="All values of a message in a line, between commas.")]
-Raw = Annotated[bool, _flag("--raw", help="The bytes as they came.")]
-MessageInfo = Annotated[bool, _flag("--include-message-info", "-i", help="Also when each was sent.")]
-FullLength = Annotated[bool, _flag("--full-length", "-f", help="Shorten nothing.")]
-Length = Annotated[int, typer.Option("--truncate-length", "-l", metavar="N", help="Shorten what is longer.", min=0)]
-NoArr = Annotated[bool, _flag("--no-arr", help="Of sequences, show only type and length.")]
-NoStr = Annotated[bool, _flag("--no-str", help="Of texts, show only the length.")]
-Flow = Annotated[bool, _flag("--flow-style", help="YAML in one line: {x: 1}.")]
+OneMessage = Annotated[bool, _flag("--once", help="Print one message and exit.")]
+Timeout = Annotated[float | None, seconds("--timeout", "Exit after this number of seconds.")]
+Field = Annotated[
+    str, typer.Option("--field", metavar="A.B", help="Print only this field, such as linear.x or 'ranges[0]'.")
+]
+Csv = Annotated[bool, _flag("--csv", help="Print the fields of a message in one line, separated by commas.")]
+Raw = Annotated[bool, _flag("--raw", help="Print the serialized bytes.")]
+MessageInfo = Annotated[
+    bool,
+    _flag("--include-message-info", "-i", help="Print the source timestamp and other information of each message."),
+]
+FullLength = Annotated[bool, _flag("--full-length", "-f", help="Print arrays and strings at full length.")]
+Length = Annotated[
+    int,
+    typer.Option(
+        "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
+    ),
+]
+NoArr = Annotated[bool, _flag("--no-arr", help="Print only type and length of arrays.")]
+NoStr = Annotated[bool, _flag("--no-str", help="Print only the length of strings.")]
+Flow = Annotated[bool, _flag("--flow-style", help="Print YAML in flow style, on one line.")]
 Clear = Annotated[bool, _flag("--clear", "-c", help="Clear the screen before each message.")]
 AsImage = Annotated[bool, _flag("--image", help="Draw a sensor_msgs/msg/Image, in a terminal with 24-bit colours.")]
-NoLost = Annotated[bool, _flag("--no-lost-messages", help="Tell nothing of lost messages.")]
+NoLost = Annotated[bool, _flag("--no-lost-messages", help="Do not report lost messages.")]
 
 # topic pub
 
-Stdin = Annotated[bool, _flag("--stdin", help="Read the YAML from standard input.")]
-PublishOnce = Annotated[bool, _flag("--once", "-1", help="Publish one message and end.")]
-Rate = Annotated[float, typer.Option("--rate", "-r", metavar="HZ", help="Messages a second.")]
-Times = Annotated[int, typer.Option("--times", "-t", metavar="N", help="Publish so many and end.", min=0)]
+Stdin = Annotated[bool, _flag("--stdin", help="Read the values from standard input.")]
+PublishOnce = Annotated[bool, _flag("--once", "-1", help="Publish one message and exit.")]
+Rate = Annotated[float, typer.Option("--rate", "-r", metavar="HZ", help="Publishing rate in Hz.")]
+Times = Annotated[
+    int, typer.Option("--times", "-t", metavar="N", help="Publish this number of messages and exit.", min=0)
+]
 Wait = Annotated[
     int | None,
     typer.Option(
         "--wait-matching-subscriptions",
         "-w",
         metavar="N",
-        help="First wait for so many subscriptions; 1 with -1 and -t.",
+        help="Number of matching subscriptions to wait for first; 1 with --once and --times.",
         min=0,
     ),
 ]
-MaxWait = Annotated[float | None, seconds("--max-wait-time-secs", "Give up after so many seconds.")]
-KeepAlive = Annotated[float, seconds("--keep-alive", "Stay so long after the last message.")]
-PrintEvery = Annotated[int, typer.Option("--print", "-p", metavar="N", help="Print every Nth message; 0: none.", min=0)]
+MaxWait = Annotated[
+    float | None, seconds("--max-wait-time-secs", "Longest time to wait for subscriptions, in seconds.")
+]
+KeepAlive = Annotated[float, seconds("--keep-alive", "Seconds to keep the node alive after the last message.")]
+PrintEvery = Annotated[
+    int, typer.Option("--print", "-p", metavar="N", help="Print every Nth message; 0 prints none.", min=0)
+]
 
 
 PROFILES = [
@@ -122,13 +160,18 @@ DURABILITIES = ["system_default", "transient_local", "volatile", "unknown", "bes
 LIVELINESSES = ["system_default", "automatic", "manual_by_topic", "unknown", "best_available"]
 
 
-Profile = Annotated[str, choice("--qos-profile", PROFILES, "Preset to begin with")]
-Depth = Annotated[int | None, typer.Option("--qos-depth", metavar="N", help="Size of the queue.", min=0, max=2**31)]
-History = Annotated[str, choice("--qos-history", HISTORIES, "History")]
-Reliability = Annotated[str, choice("--qos-reliability", RELIABILITIES, "Reliability")]
-Durability = Annotated[str, choice("--qos-durability", DURABILITIES, "Durability")]
-Liveliness = Annotated[str, choice("--qos-liveliness", LIVELINESSES, "Liveliness")]
-Lease = Annotated[float | None, seconds("--qos-liveliness-lease-duration-seconds", "Liveliness lease.")]
+Profile = Annotated[str, choice("--qos-profile", PROFILES, "QoS preset, which the other QoS options change")]
+Depth = Annotated[
+    int | None,
+    typer.Option("--qos-depth", metavar="N", help="QoS depth: number of messages in the queue.", min=0, max=2**31),
+]
+History = Annotated[str, choice("--qos-history", HISTORIES, "QoS history")]
+Reliability = Annotated[str, choice("--qos-reliability", RELIABILITIES, "QoS reliability")]
+Durability = Annotated[str, choice("--qos-durability", DURABILITIES, "QoS durability")]
+Liveliness = Annotated[str, choice("--qos-liveliness", LIVELINESSES, "QoS liveliness")]
+Lease = Annotated[
+    float | None, seconds("--qos-liveliness-lease-duration-seconds", "QoS liveliness lease duration in seconds.")
+]
 
 
 class QoSFlags(NamedTuple):

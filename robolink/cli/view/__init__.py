@@ -38,21 +38,25 @@ def _checked_panels(names: str) -> str:
 @app.command("view")
 def view(
     port: Annotated[
-        int | None, typer.Option("--port", metavar="PORT", min=0, max=65535, help="Default 8765, or the next free one.")
+        int | None,
+        typer.Option("--port", metavar="PORT", min=0, max=65535, help="Port; by default 8765 or the next free one."),
     ] = None,
     host: Annotated[
-        str, typer.Option("--host", metavar="ADDRESS", help="Where to listen; 0.0.0.0 opens it to the network.")
+        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; 0.0.0.0 opens it to the network.")
     ] = "127.0.0.1",
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
-    read_only: Annotated[bool, typer.Option("--read-only", help="Nobody may publish, call or set anything.")] = False,
+    read_only: Annotated[
+        bool, typer.Option("--read-only", help="Do not let anybody publish, call services or set parameters.")
+    ] = False,
     bag: Annotated[
         Path | None, typer.Option("--bag", metavar="FILE", help="Show this bag instead of a running system.")
     ] = None,
     panels: Annotated[
-        str, typer.Option("--panels", metavar="NAME+NAME", help="Panels to begin with.", callback=_checked_panels)
+        str, typer.Option("--panels", metavar="NAME+NAME", help="Panels to open.", callback=_checked_panels)
     ] = "",
     token: Annotated[
-        str, typer.Option("--token", metavar="TEXT", help="Secret in the address; by default a new one each time.")
+        str,
+        typer.Option("--token", metavar="TEXT", help="Secret token in the address; a new one each time by default."),
     ] = "",
     enclave: Enclave = "",
 ) -> None:
