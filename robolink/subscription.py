@@ -122,7 +122,7 @@ class Subscription(Receiver, Generic[MsgT]):
         self._backlog: Backlog | None = None
         if depth == ALL:
             self._backlog = Backlog(topic, self._make_gaps(), owner.context.time.steady)
-            self._open = self._open_kept
+            self._open = self._open_stored
         self._listen_for_events(callbacks)
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
@@ -150,7 +150,7 @@ class Subscription(Receiver, Generic[MsgT]):
         self._with_info = self._callback_type is self.CallbackType.WithMessageInfo
 
     def _look_over(self, arrived: Any) -> Sample | FromHumbleKey | None:
-        """Return what is stored with KEEP_ALL: plain bytes, since a sample of Zenoh's holds all of its batch.
+        """Return the item that KEEP_ALL stores: plain bytes, since a sample of Zenoh's holds all of its batch.
 
         None for a message that was overwritten in shared memory.
         """
@@ -228,9 +228,9 @@ class Subscription(Receiver, Generic[MsgT]):
             return None
         return self._callback(message) if info is None else self._callback(message, info)
 
-    def _open_kept(self, kept: Sample) -> Any:
+    def _open_stored(self, stored: Sample) -> Any:
         """Return the message of what `_look_over` has read."""
-        payload, attachment = kept
+        payload, attachment = stored
         check_attachment(attachment)
         return self._decode(payload)
 

@@ -23,7 +23,7 @@ from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.host.patches.snapshot import process_as_before
 from robolink.impl.log_output import Record, output
-from robolink.transport import shared_pools, zenoh, zenoh_tokens
+from robolink.transport import joining, shared_pools, zenoh, zenoh_tokens
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
 from tests.support import process_starts
@@ -175,8 +175,8 @@ def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at the graph wait for those, too, whom a machine that does ten things at once holds up for a while."""
     for name, seconds in {"QUIET": 0.3, "PATIENCE": 5.0, "LONGEST": 30.0}.items():
         monkeypatch.setattr(zenoh_tokens, name, seconds)
-    for name, seconds in {"REUNION": 0.5, "LINK_WITHIN": 30.0}.items():
-        monkeypatch.setattr(zenoh, name, seconds)
+    monkeypatch.setattr(zenoh, "REUNION", 0.5)
+    monkeypatch.setattr(joining, "LINK_WITHIN", 30.0)
 
 
 @pytest.fixture

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import os
+from collections.abc import Mapping
 
 from robolink.exceptions import TransportError, nearest
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
 
-__all__ = ["Handle", "Outlet", "Query", "Sample", "Sink", "Transport", "connect"]
+__all__ = ["Handle", "Outlet", "Query", "Sample", "Sink", "Transport", "connect", "open_zenoh"]
 
 
 def connect(
@@ -34,14 +36,44 @@ def connect(
             from robolink.transport.memory import MemoryTransport
 
             return MemoryTransport(name)
-        case "zenoh" if not name and os.environ.get("ROS_SECURITY_ENABLE", "false") != "false":
-            from robolink.transport.secured import open_session
-
-            return open_session(domain, network, os.environ, enclave)
         case "zenoh" if not name:
-            from robolink.transport.zenoh import ZenohTransport
-
-            return ZenohTransport(domain, network)
+            return open_zenoh(domain, network, enclave=enclave)
     raise TransportError(
         f"no transport '{url[:200]}'{nearest(scheme[:200], ('memory', 'zenoh'))}: expected memory://NAME or zenoh://"
     )
+
+
+def open_zenoh(
+    domain: int = 0,
+    network: str | None = None,
+    environ: Mapping[str, str] | None = None,
+    *,
+    enclave: str | None = None,
+) -> Transport:
+    """Open a session on a Zenoh network, as `connect` does: one that roams where it leaves the machine or has keys.
+
+    Args:
+        domain: ROS domain id.
+        network: As for `connect`.
+        environ: Environment; None is the process's own.
+        enclave: As for `connect`.
+
+    Raises:
+        TransportError: as `connect` does.
+    """
+    from robolink.transport.zenoh import ZenohTransport
+
+    given = dict(os.environ if environ is None else environ)
+    if given.get("ROS_SECURITY_ENABLE", "false") != "false":
+        from robolink.transport.secured import open_secured
+
+        if (secured := open_secured(domain, network, given, enclave)) is not None:
+            return secured
+        given["ROS_SECURITY_ENABLE"] = "false"
+    open_plain = functools.partial(ZenohTransport, domain, network, given)
+    plain = open_plain()
+    if not plain.leaves_machine:
+        return plain
+    from robolink.transport.roaming import RoamingTransport  # late: few sessions leave the machine
+
+    return RoamingTransport(open_plain, domain, plain)

@@ -5,6 +5,7 @@ Zenoh drops what is denied in silence. So the rights are looked at here, before 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -17,12 +18,15 @@ from robolink.security.session import Security
 from robolink.transport import certificates, network, permission_watch
 from robolink.transport.base import Handle, Outlet, Sample, Sink
 from robolink.transport.enclave_keys import Keys
+from robolink.transport.roaming import RoamingTransport
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import parse_token
 
 
-def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enclave: str | None) -> ZenohTransport:
-    """Open a session with the security that the environment asks for; without any if it asks for none.
+def open_secured(
+    domain: int, asked: str | None, environ: Mapping[str, str], enclave: str | None
+) -> SecuredTransport | None:
+    """Open a session with the security that the environment requests; None if it is to be open to everybody.
 
     Args:
         domain: ROS domain id.
@@ -33,19 +37,19 @@ def open_session(domain: int, asked: str | None, environ: Mapping[str, str], enc
     checked_domain(domain)
     security = session.wanted(environ, domain, enclave)
     if not session.is_on(environ):  # False, written otherwise
-        return ZenohTransport(domain, asked, environ)
+        return None
     if security is None:
         get_logger("security").warning(
             f"enclave '{environ.get(session.OVERRIDE) or enclave or '/'}' has no keys, and "
             "ROS_SECURITY_STRATEGY is not Enforce: this session is open to everybody"
         )
-        return ZenohTransport(domain, asked, {**environ, session.ENABLE: "false"})
+        return None
     for warning in security.warnings:
         get_logger("security").warning(warning)
     return SecuredTransport(security, asked, {**environ, session.OVERRIDE: security.enclave})
 
 
-class SecuredTransport(ZenohTransport):
+class SecuredTransport(RoamingTransport):
     """A session of an enclave, which refuses what the enclave has no right to.
 
     Args:
@@ -59,7 +63,7 @@ class SecuredTransport(ZenohTransport):
         self._keys = Keys(security)
         domain = security.rights.domain
         try:
-            super().__init__(domain, asked, environ, self._keys.secure)
+            super().__init__(functools.partial(ZenohTransport, domain, asked, dict(environ), self._keys.secure), domain)
         except SecurityError:
             raise
         except TransportError as error:
@@ -82,11 +86,6 @@ class SecuredTransport(ZenohTransport):
     def validity(self) -> certificates.Validity:
         """Time in which its certificate counts."""
         return self._keys.valid
-
-    @property
-    def has_left(self) -> bool:
-        """True once it is closed."""
-        return self._has_left
 
     def advertise(self, key: str, qos: QoSProfile) -> Outlet:
         """Declare a publisher; raises SecurityError where the enclave may not publish."""

@@ -20,8 +20,8 @@ LOST = object()
 class ZenohCall:
     """A pending call. Giving up is final: neither replies nor the end come after it."""
 
-    def __init__(self, session: Any, cancel: zenoh.CancellationToken, gate: Any, end: Any) -> None:
-        self.session, self._cancel, self._gate, self._end = session, cancel, gate, end
+    def __init__(self, cancel: zenoh.CancellationToken, gate: Any, end: Any) -> None:
+        self._cancel, self._gate, self._end = cancel, gate, end
         self._lock, self._has_closed = threading.Lock(), False
 
     def lose(self) -> None:

@@ -33,17 +33,6 @@ class Publishers(NamedTuple):
     """Declares one that knows whether any other session listens."""
 
 
-class Heard(NamedTuple):
-    """Zenoh's subscriber, and a gate of its own by which it delivers, so that this can end before the session does."""
-
-    subscriber: Any
-    gate: Sink
-
-    def undeclare(self) -> None:
-        """Undeclare the subscriber."""
-        self.subscriber.undeclare()
-
-
 def declare_publishers(session: zenoh.Session, key: str, qos: QoSProfile) -> Publishers:
     """Declare the publisher of a resolved profile; for a peer with a full buffer it waits a little, then drops.
 
@@ -89,12 +78,6 @@ def declare_subscriber(session: zenoh.Session, key: str, gate: Sink, qos: QoSPro
     )
     follow(subscriber.handler, gate, "robolink latched")
     return subscriber
-
-
-def declare_heard(session: zenoh.Session, key: str, gate: Sink, qos: QoSProfile) -> Heard:
-    """Declare a subscriber, as `declare_subscriber` does, with a gate of its own in front of `gate`."""
-    own = make_gate(gate)
-    return Heard(declare_subscriber(session, key, own, qos), own)
 
 
 def follow(channel: Any, sink: Sink, name: str) -> None:

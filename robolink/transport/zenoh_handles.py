@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import functools
 import threading
 from collections import Counter
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import zenoh
 
@@ -17,11 +14,8 @@ from robolink.networks.settings import LONGEST_WAIT
 from robolink.system import clocks, heap
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
-from robolink.transport.history import Latch
 from robolink.transport.network import reason
-from robolink.transport.zenoh_declare import Publishers, aim_gate, close_gate, is_matching, quietly
-from robolink.transport.zenoh_mending import Mending
-from robolink.transport.zenoh_sieve import Sieve
+from robolink.transport.zenoh_declare import Publishers, close_gate, is_matching, quietly
 
 LARGE = 32 * 1024
 """Payload size in bytes from which it is cheaper to check for subscriptions first than to copy it for nobody."""
@@ -81,51 +75,15 @@ class Topic:
 _NOBODY = Topic()
 
 
-class Made(NamedTuple):
-    """Declaration: the session, the entity, and a function that declares the same elsewhere."""
-
-    session: Any
-    entity: Any
-    declare: Callable[[Any], Any]
-    """Declares the same in another session."""
-
-
 class Declared:
-    """A declaration with Zenoh, until it or its session is closed."""
+    """Declarations with Zenoh, until they or their session are closed, and the gates through which they call."""
 
-    __slots__ = ("_declare", "_entity", "_gate", "_holdings", "_session")
+    __slots__ = ("_entities", "_gates", "_holdings")
 
-    def __init__(self, holdings: Holdings, made: Made, gate: Sink | None = None) -> None:
-        self._holdings, self._gate = holdings, gate
-        self._session, self._entity, self._declare = made
+    def __init__(self, holdings: Holdings, entities: list[Any], *gates: Sink) -> None:
+        self._holdings, self._entities, self._gates = holdings, entities, gates
         with holdings.lock:
             holdings.handles[self] = None
-
-    def declare_in(self, session: Any) -> Any:
-        """Declare the same in another session; `adopt` takes it."""
-        return self._declare(session)
-
-    def adopt(self, made: Any, session: Any) -> list[Any]:
-        """Go on with what `declare_in` has made in this session; return what is of no use any more."""
-        with self._holdings.lock:
-            if self not in self._holdings.handles or self._session is session:
-                return self._entities_of(made)
-            self._session = session
-            return self._replace(made)
-
-    def move_to(self, session: Any) -> list[Any]:
-        """Go on in this session, unless it is there already; return what is of no use any more."""
-        return [] if self._session is session else self.adopt(self.declare_in(session), session)
-
-    def settle_in(self) -> None:
-        """Begin what has to wait until everything has moved to another session."""
-
-    def _entities_of(self, made: Any) -> list[Any]:
-        return [made]
-
-    def _replace(self, made: Any) -> list[Any]:
-        entity, self._entity = self._entity, made
-        return [entity]
 
     def close(self) -> None:
         """Undeclare. Safe to call twice."""
@@ -136,11 +94,11 @@ class Declared:
             quietly(entity.undeclare)
 
     def shut(self, why: str) -> list[Any]:
-        """Close the gate; return the entities to undeclare."""
-        if self._gate:
-            close_gate(self._gate)
-        entity, self._entity = self._entity, _Gone(why)
-        return [entity]
+        """Close the gates; return the entities to undeclare. What uses them from now on raises `why`."""
+        for each in self._gates:
+            close_gate(each)
+        left, self._entities = self._entities, []
+        return left
 
     def disown(self, why: str) -> None:
         """Shut it in a forked child, where undeclaring or freeing it would wait for threads that do not exist."""
@@ -170,90 +128,34 @@ class _Gone:
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = (
-        "_asked",
-        "_declare_remote",
-        "_has_told",
-        "_latch",
-        "_matched_until",
-        "_remote",
-        "_topic",
-        "cache",
-        "key",
-    )
+    __slots__ = ("_asked", "_declare_remote", "_has_told", "_matched_until", "_remote", "_topic", "_used", "key")
 
-    def __init__(
-        self,
-        holdings: Holdings,
-        key: str,
-        made: Made,
-        latch: Latch[tuple[bytes, bytes]] | None = None,
-        cache: Latch[tuple[bytes, bytes]] | None = None,
-    ) -> None:
+    def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
         # First, since it may be shut from the moment on that the session has it.
-        publishers: Publishers = made.entity
-        self.cache = cache
-        self.key, self._topic, self._asked = key, holdings.topic(key), publishers.asked
-        self._declare_remote, self._latch = publishers.declare_remote, latch
+        self.key, self._topic = key, holdings.topic(key)
+        self._used, self._asked, self._declare_remote = publishers
         self._remote: Any = None
         self._has_told, self._matched_until = False, 0.0
-        super().__init__(holdings, made._replace(entity=publishers.used))
-
-    def adopt(self, made: Any, session: Any) -> list[Any]:
-        """Go on with these publishers; what is retained for late joiners is retained by the new one."""
-        if self._latch is None:
-            return super().adopt(made, session)
-        with self._latch.lock:
-            for payload, attachment in self._latch.last():
-                quietly(functools.partial(made.used.put, payload, attachment=attachment))
-            return super().adopt(made, session)
-
-    def _entities_of(self, made: Publishers) -> list[Any]:
-        return [made.used, made.asked]
-
-    def _replace(self, made: Publishers) -> list[Any]:
-        left = [self._entity, self._asked, self._remote]
-        self._declare_remote, self._remote, self._matched_until = made.declare_remote, None, 0.0
-        self._asked, self._entity = made.asked, made.used
-        return [each for each in left if each is not None]
+        super().__init__(holdings, [])
 
     def put(self, payload: bytes, attachment: bytes) -> None:
         """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
-        if self.cache is not None:
-            self.cache.retain((payload, attachment), len(payload))
-        if self._latch is not None or len(payload) >= LARGE:
-            self._put_rarely(payload, attachment)
+        if len(payload) >= LARGE:
+            self._put_large(payload, attachment)
             return
         if self._topic.sinks:
             self._deliver_here(payload, attachment)
-        entity = self._entity
-        try:  # not by `_send`: this is run once a message
-            entity.put(payload, attachment=attachment)
+        try:  # `repeat` written out: this is run once a message
+            self._used.put(payload, attachment=attachment)
         except zenoh.ZError as error:
-            self._send_again(entity, error, payload, attachment)
-
-    def _put_rarely(self, payload: bytes, attachment: bytes) -> None:
-        """Send a large message, or one of a latched topic."""
-        with self._latch.lock if self._latch is not None else contextlib.nullcontext():
-            if self._latch is not None:
-                self._latch.retain((payload, attachment))
-            if len(payload) >= LARGE:
-                self._put_large(payload, attachment)
-            else:
-                self._deliver_here(payload, attachment)
-                self._send(payload, attachment)
-
-    def _send(self, payload: bytes, attachment: bytes) -> None:
-        entity = self._entity
-        try:
-            entity.put(payload, attachment=attachment)
-        except zenoh.ZError as error:
-            self._send_again(entity, error, payload, attachment)
-
-    def _send_again(self, entity: Any, error: Exception, payload: bytes, attachment: bytes) -> None:
-        if entity is self._entity:
             raise self._holdings.failure(self.key, error) from None
-        self._send(payload, attachment)  # it was replaced meanwhile, and its session closed
+
+    def repeat(self, payload: bytes, attachment: bytes) -> None:
+        """Send a message that the subscriptions of this session, but for latched ones, have already."""
+        try:
+            self._used.put(payload, attachment=attachment)
+        except zenoh.ZError as error:
+            raise self._holdings.failure(self.key, error) from None
 
     def _put_large(self, payload: bytes, attachment: bytes) -> None:
         refuse_giant(self.key, payload)
@@ -262,7 +164,7 @@ class ZenohOutlet(Declared):
         self._deliver_here(payload, attachment)
         begin = clocks.monotonic()
         if self._worth_a_copy(begin):
-            self._send(payload, attachment)
+            self.repeat(payload, attachment)
             if clocks.monotonic() - begin >= LONGEST_WAIT:
                 self._tell_of_no_room(len(payload))
 
@@ -286,8 +188,8 @@ class ZenohOutlet(Declared):
             )
 
     def _worth_a_copy(self, now: float) -> bool:
-        keeps_for_late_joiners = self._entity is not self._asked
-        if keeps_for_late_joiners or now < self._matched_until:
+        retains_for_late_joiners = self._used is not self._asked
+        if retains_for_late_joiners or now < self._matched_until:
             return True
         found = is_matching(self._asked) and (not self._topic.sinks or bool(self._topic.latched) or self._is_remote())
         if found:
@@ -307,31 +209,25 @@ class ZenohOutlet(Declared):
     def shut(self, why: str) -> list[Any]:
         """Stop sending; return all publishers, the one for sending and those for matching."""
         self._topic = _NOBODY
-        used = super().shut(f"the publisher of {self.key[:200]} is of no use any more: {why}")
-        asked, self._asked = self._asked, _Gone(why)
-        remote, self._remote = self._remote, _Gone(why)
-        return [*used, *(each for each in (asked, remote) if each is not None and each not in used)]
+        left = self._used, self._asked, self._remote
+        self._used = _Gone(f"the publisher of {self.key[:200]} is of no use any more: {why}")
+        self._asked = self._remote = _Gone(why)
+        return list({id(each): each for each in left if each is not None}.values())
 
 
 class ZenohSubscription(Declared):
     """A subscription; to a latched one, samples of its own session come from Zenoh too."""
 
-    __slots__ = ("_sink", "_topic")
+    __slots__ = ("_gate", "_topic")
 
-    def __init__(self, holdings: Holdings, made: Made, gate: Sink, topic: Topic, sink: Sink, *, latched: bool) -> None:
-        self._topic, self._sink = topic, sink
-        super().__init__(holdings, made, gate)
+    def __init__(self, holdings: Holdings, subscriber: Any, gate: Sink, topic: Topic, *, latched: bool) -> None:
+        self._topic, self._gate = topic, gate
+        super().__init__(holdings, [subscriber], gate)
         with holdings.lock:
             if latched:
                 topic.latched = (*topic.latched, gate)
             else:
                 topic.sinks = (*topic.sinks, gate)
-
-    def sift(self, on: bool) -> None:
-        """Deliver nothing twice from now on, or again whatever comes: two sessions may bring the same for a while."""
-        with self._holdings.lock:
-            if self in self._holdings.handles and type(self._sink) is not Sieve:  # one that is latched always does
-                aim_gate(self._gate, Sieve(self._sink) if on else self._sink)
 
     def close(self) -> None:
         """Undeclare. Safe to call twice."""
@@ -339,9 +235,3 @@ class ZenohSubscription(Declared):
             self._topic.sinks = tuple(sink for sink in self._topic.sinks if sink is not self._gate)
             self._topic.latched = tuple(sink for sink in self._topic.latched if sink is not self._gate)
         super().close()
-
-    def shut(self, why: str) -> list[Any]:
-        """Deliver nothing any more."""
-        if isinstance(self._sink, Mending):  # an answer may be on its way
-            self._sink.close()
-        return super().shut(why)

@@ -19,14 +19,15 @@ from typing import Any, NamedTuple
 import msgspec
 import zenoh
 
-from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, resolved
 from robolink.system import clocks
 from robolink.transport import lifetime
 from robolink.transport import zenoh_declare as declare
-from robolink.transport.base import Sink
-from robolink.transport.history import Latch, stored_depth
+from robolink.transport.base import Handle, Sink
+from robolink.transport.history import stored_depth
+from robolink.transport.roaming_handles import Declaration, Holdings, Retained, RoamingOutlet
+from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_cache import MOST_BYTES, MOST_RETAINED, Answer, Asked, newer, parts, together
-from robolink.transport.zenoh_handles import Declared, Holdings, Made, ZenohOutlet
 from robolink.transport.zenoh_mending import Mending
 
 ANSWERED_WITHIN = 2.0
@@ -44,11 +45,8 @@ MOST_KNOWN = 10_000
 MOST_WAITING = 1000
 """Most questions that wait for their turn, those to be asked and those to be answered."""
 
-Make = Callable[..., Made]
-"""Function of a name for errors and of a function of a session, by which that declares something."""
-
-Settle = Callable[[Declared], object]
-"""Function that moves what has just been declared to the session of now."""
+Add = Callable[[Declaration], object]
+"""Function that declares something in the transport's present session."""
 
 
 class _Question(NamedTuple):
@@ -69,91 +67,63 @@ class _Generation:
         self.seen: set[str] = set()
 
 
-class _Watched(NamedTuple):
-    """Subscriptions of one session to the tokens of other transports, and to what these tell."""
+class _Offered:
+    """Offer to send messages again, in one session: a server of questions, and a token that tells of it."""
 
-    tokens: declare.Heard
-    calls: declare.Heard
+    def __init__(self, plain: ZenohTransport, key: str, answer: Callable[[_Offered, Any], object]) -> None:
+        self.session, self.key = plain.session, key
+        self.answers = threading.Event()
+        """Set when publishers use this session: an answer before would have less than they send elsewhere."""
+        self._answer = answer
+        self._declared = plain.declare(key, self._declare)
 
+    def _declare(self, session: Any) -> list[Any]:
+        # Not a FifoChannel: when that is full, Zenoh stops all that comes by the same link.
+        queryable = session.declare_queryable(self.key, zenoh.handlers.RingChannel(MOST_WAITING), complete=True)
+        declare.follow(queryable.handler, functools.partial(self._answer, self), "robolink again")
+        return [queryable, session.liveliness().declare_token(self.key)]
 
-class _Watch(Declared):
-    """Watch of the tokens of other transports, and of their calls to ask.
+    def ask_me(self) -> None:
+        """Send all who know the token a call to ask."""
+        with lifetime.inside:
+            # Not by another token: a declaration waits for what is being sent, for seconds if a link is full.
+            self.session.put(
+                self.key,
+                b"",
+                priority=zenoh.Priority.REAL_TIME,
+                congestion_control=zenoh.CongestionControl.DROP,
+            )
 
-    A former session's stays until that is left: what it brings must not come before the token of whoever sends it.
-    """
-
-    def _entities_of(self, made: _Watched) -> list[Any]:
-        return list(made)
-
-    def _replace(self, made: _Watched) -> list[Any]:
-        left, self._entity = self._entity, made
-        return list(left)
-
-    def shut(self, why: str) -> list[Any]:
-        """Ask no more."""
-        (left,) = super().shut(why)
-        if not isinstance(left, _Watched):
-            return [left]
-        for each in left:
-            declare.close_gate(each.gate)
-        return list(left)
-
-
-class _Offered(NamedTuple):
-    """Declarations of an offer to send messages again, in one session."""
-
-    key: str
-    queryable: Any
-    token: Any
-    answers: threading.Event
-    """Set when publishers use this session: an answer before would have less than they send elsewhere."""
+    def close(self) -> None:
+        """Answer no more."""
+        self.answers.set()
+        self._declared.close()
 
 
-class _Offer(Declared):
+class _Offer(Declaration):
     """Offer to send messages again."""
 
-    def __init__(self, holdings: Holdings, made: Made) -> None:
-        self._answers: threading.Event = made.entity.answers
-        super().__init__(holdings, made)
+    _handle: _Offered
+
+    def begin(self, plain: ZenohTransport, handle: Handle) -> None:
+        """Answer from the beginning on."""
+        super().begin(plain, handle)
         self.settle_in()
 
     def settle_in(self) -> None:
         """Answer from now on."""
-        self._answers.set()
+        self._handle.answers.set()
 
     def ask_me(self) -> None:
-        """Send all who know the token a call to ask."""
-        with self._holdings.lock:
-            offered, session = self._entity, self._session
-        if isinstance(offered, _Offered):
-            with lifetime.inside:
-                # Not by another token: a declaration waits for what is being sent, for seconds if a link is full.
-                session.put(
-                    offered.key,
-                    b"",
-                    priority=zenoh.Priority.REAL_TIME,
-                    congestion_control=zenoh.CongestionControl.DROP,
-                )
-
-    def _entities_of(self, made: _Offered) -> list[Any]:
-        return [made.token, made.queryable]
-
-    def _replace(self, made: _Offered) -> list[Any]:
-        left, self._entity, self._answers = self._entity, made, made.answers
-        return self._entities_of(left)
-
-    def shut(self, why: str) -> list[Any]:
-        """Answer no more."""
-        self.settle_in()
-        (left,) = super().shut(why)
-        return self._entities_of(left) if isinstance(left, _Offered) else [left]
+        """Send all who know the token of the present session a call to ask."""
+        self._handle.ask_me()
 
 
 class Recovery:
     """Keeps what a transport publishes, and asks for what its subscriptions have lost.
 
     Args:
-        holdings: What the transport has declared.
+        holdings: Declarations of the transport.
         name: Name of the transport among others, the same in all of its sessions.
         domain: ROS domain id.
         thinned: Key expressions of the topics that the transport's own limits thin: nothing of these is kept;
@@ -172,37 +142,38 @@ class Recovery:
         self._offer: _Offer | None = None
         self._is_asking = self._has_watched = self._has_offered = False
 
-    def cache(self, key: str, qos: QoSProfile, make: Make, settle: Settle) -> Latch[tuple[bytes, bytes]] | None:
-        """Return the cache of a publisher of a resolved profile; None if it needs none.
+    def cache(self, key: str, qos: QoSProfile, add: Add) -> Retained | None:
+        """Return the latch of a publisher, for those who have lost some; None if it needs none.
 
-        `make` and `settle` declare, the first time, that messages are sent again to who asks.
+        `add` declares, the first time, that messages are sent again to who asks.
         """
         if not self._recovers(qos) or any(each.includes(key) for each in self._thinned or ()):
             return None
         with self._lock:
             has_offered, self._has_offered = self._has_offered, True
         if not has_offered:
-            self._offer = _Offer(self._holdings, make(self._prefix, self._declare_offer))
-            settle(self._offer)
-        return Latch(min(stored_depth(qos) or MOST_RETAINED, MOST_RETAINED), MOST_BYTES)
+            self._offer = _Offer(self._holdings, self._declare_offer)
+            add(self._offer)
+        return Retained(min(stored_depth(qos) or MOST_RETAINED, MOST_RETAINED), MOST_BYTES)
 
-    def mend(self, key: str, qos: QoSProfile, sink: Sink, make: Make, settle: Settle) -> Sink:
-        """Return the sink of a subscription of a resolved profile: if need be one that puts in order what comes again.
+    def mend(self, key: str, qos: QoSProfile, sink: Sink, add: Add) -> Mending | None:
+        """Return a sink in front of a subscription's, which puts in order what comes again; None if nothing does.
 
-        `make` and `settle` begin, the first time, to look for the tokens of others.
+        `add` begins, the first time, to look for the tokens of others.
         """
         if not self._recovers(qos):
-            return sink
+            return None
         mending = Mending(sink)
         with self._lock:
             self._mendings[mending] = key, clocks.monotonic()
             has_watched, self._has_watched = self._has_watched, True
         if not has_watched:
-            settle(_Watch(self._holdings, make(self._prefix, self._declare_watch)))
+            # A former session's watch stays until that is left: what it brings must not come before its sender's token.
+            add(Declaration(self._holdings, self._declare_watch))
         return mending
 
     def _recovers(self, qos: QoSProfile) -> bool:
-        reliable = qos.reliability is ReliabilityPolicy.RELIABLE
+        reliable = resolved(qos).reliability is ReliabilityPolicy.RELIABLE
         return self._thinned is not None and reliable and qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL
 
     def ask_me(self) -> None:
@@ -214,41 +185,41 @@ class Recovery:
             with contextlib.suppress(zenoh.ZError):  # closed meanwhile
                 self._offer.ask_me()
 
-    def _declare_offer(self, session: Any) -> _Offered:
-        key, answers = f"{self._prefix}/{self._name}/{session.info.zid()}", threading.Event()
-        # Not a FifoChannel: when that is full, Zenoh stops all that comes by the same link.
-        queryable = session.declare_queryable(key, zenoh.handlers.RingChannel(MOST_WAITING), complete=True)
-        declare.follow(queryable.handler, functools.partial(self._answer, key, answers), "robolink again")
-        return _Offered(key, queryable, session.liveliness().declare_token(key), answers)
+    def _declare_offer(self, plain: ZenohTransport) -> _Offered:
+        return _Offered(plain, f"{self._prefix}/{self._name}/{plain.session_id}", self._answer)
 
-    def _answer(self, key: str, answers: threading.Event, query: Any) -> None:
-        answers.wait(ANSWERED_WITHIN)
+    def _answer(self, offered: _Offered, query: Any) -> None:
+        offered.answers.wait(ANSWERED_WITHIN)
         payload = query.payload
         try:
             asked = msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Asked])
             for each in together(asked):  # so that nobody gets a topic twice
-                for part in self._kept(each):
+                for part in self._retained(each):
                     with lifetime.inside:
-                        query.reply(key, part)  # dropped where its link is full, as the question asks
+                        query.reply(offered.key, part)  # dropped where its link is full, as the question asks
         except (msgspec.DecodeError, msgspec.ValidationError, zenoh.ZError):  # nonsense, or who asked is gone
             pass
         finally:
             declare.quietly(query.drop)
 
-    def _kept(self, asked: Asked) -> Iterator[bytes]:
-        with self._holdings.lock:
-            handles = list(self._holdings.handles)
-        for each in handles:
-            if isinstance(each, ZenohOutlet) and each.cache is not None and each.key == asked.key:
+    def _retained(self, asked: Asked) -> Iterator[bytes]:
+        for each in self._holdings.all():
+            if isinstance(each, RoamingOutlet) and each.cache is not None and each.key == asked.key:
                 yield from parts(asked.key, newer(each.cache.last(), asked))
 
-    def _declare_watch(self, session: Any) -> _Watched:
-        generation, pattern = _Generation(session), f"{self._prefix}/*/*"
+    def _declare_watch(self, plain: ZenohTransport) -> Handle:
+        generation, pattern = _Generation(plain.session), f"{self._prefix}/*/*"
         changed = declare.make_gate(functools.partial(self._on_token, generation))
-        called = declare.make_gate(functools.partial(self._on_call, session))
-        calls = session.declare_subscriber(pattern, declare.direct(called), allowed_origin=zenoh.Locality.REMOTE)
-        tokens = session.liveliness().declare_subscriber(pattern, declare.direct(changed), history=True)
-        return _Watched(declare.Heard(tokens, changed), declare.Heard(calls, called))
+        called = declare.make_gate(functools.partial(self._on_call, plain.session))
+
+        def watch(session: Any) -> list[Any]:
+            remote = zenoh.Locality.REMOTE
+            return [
+                session.declare_subscriber(pattern, declare.direct(called), allowed_origin=remote),
+                session.liveliness().declare_subscriber(pattern, declare.direct(changed), history=True),
+            ]
+
+        return plain.declare(self._prefix, watch, changed, called)
 
     def _on_token(self, generation: _Generation, sample: zenoh.Sample) -> None:
         """Note a token; called on Zenoh's thread, before any message that comes by the same link."""

@@ -12,8 +12,8 @@ import zenoh
 
 from robolink.system import clocks
 from robolink.system.waits import get_within
-from robolink.transport.zenoh_declare import close_gate
-from robolink.transport.zenoh_handles import Declared, Holdings, Made
+from robolink.transport.base import Sink
+from robolink.transport.zenoh_handles import Declared, Holdings
 
 QUIET = 0.03
 """Quiet time after which no more peers are expected, in seconds."""
@@ -30,9 +30,9 @@ class ZenohToken(Declared):
 
     __slots__ = ("_token",)
 
-    def __init__(self, holdings: Holdings, made: Made, token: str) -> None:
+    def __init__(self, holdings: Holdings, announced: Any, token: str) -> None:
         self._token = token
-        super().__init__(holdings, made)
+        super().__init__(holdings, [announced])
         with holdings.lock:
             holdings.tokens[token] += 1
 
@@ -60,18 +60,24 @@ class Changes:
     def __call__(self, sample: zenoh.Sample) -> None:
         """Handle a token change from Zenoh."""
         token, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
-        if not alive and self._own.get(token):  # the end of a session in which it was announced before
-            return
+        if alive or not self._own.get(token):  # else the end of another session in which it was announced, too
+            self.change(token, alive)
+
+    def change(self, token: str, alive: bool) -> object:
+        """Report a token that has come or gone, unless that is known; return what `on_change` returns."""
         with self._telling:
             if self._found is not None:
                 (self._found.add if alive else self._found.discard)(token)
-            self._tell(token, alive)
+            return self._tell(token, alive)
 
-    def _tell(self, token: str, alive: bool) -> None:
-        if self._on_change and alive != (token in self.alive):
-            (self.alive.add if alive else self.alive.discard)(token)
-            if self._on_change(token, alive) is False:
-                self.alive.discard(token)
+    def _tell(self, token: str, alive: bool) -> object:
+        if self._on_change is None or alive == (token in self.alive):
+            return None
+        (self.alive.add if alive else self.alive.discard)(token)
+        answer = self._on_change(token, alive)
+        if answer is False:
+            self.alive.discard(token)
+        return answer
 
     def count_again(self) -> None:
         """Note from now on which tokens are found again, in another session."""
@@ -97,29 +103,12 @@ class Changes:
 class ZenohWatch(Declared):
     """A watch of tokens."""
 
-    __slots__ = ("_changes", "_feed")
+    __slots__ = ("_changes",)
 
-    def __init__(self, holdings: Holdings, made: Made, changes: Changes) -> None:
+    def __init__(self, holdings: Holdings, made: tuple[Any, Sink], changes: Changes) -> None:
         self._changes = changes
-        subscriber, self._feed = made.entity
-        super().__init__(holdings, made._replace(entity=subscriber))
-
-    def declare_in(self, session: Any) -> Any:
-        """Watch in another session too; from now on that one tells."""
-        self._changes.count_again()
-        return super().declare_in(session)
-
-    def _entities_of(self, made: Any) -> list[Any]:
-        return [made[0]]
-
-    def _replace(self, made: Any) -> list[Any]:
-        close_gate(self._feed)  # it would tell of the end of links that the other session has anew
-        subscriber, self._feed = made
-        return super()._replace(subscriber)
-
-    def settle(self) -> None:
-        """Report tokens as gone that the new session has not found."""
-        self._changes.settle()
+        subscriber, feed = made
+        super().__init__(holdings, [subscriber], feed)
 
     def shut(self, why: str) -> list[Any]:
         """Stop reporting changes; return the entities to undeclare."""

@@ -19,7 +19,7 @@ from robolink.exceptions import TransportClosedError
 from robolink.transport import lifetime, zenoh
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_declare import Publishers
-from robolink.transport.zenoh_handles import Holdings, Made, Topic, ZenohOutlet
+from robolink.transport.zenoh_handles import Holdings, Topic, ZenohOutlet
 from tests.support.exits import PATIENCE, program, run
 
 # --- signals at the exit --------------------------------------------------------------------------------------------
@@ -112,16 +112,16 @@ def test_a_close_that_a_ctrl_c_broke_off_is_done_again(domain: int, monkeypatch:
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(zenoh, "_leave", interrupted)
+        patch.setattr(zenoh, "leave", interrupted)
         with pytest.raises(KeyboardInterrupt):
             session.close()
     with pytest.raises(TransportClosedError):
         session.announce("a/token")
     assert session in lifetime._open
-    assert not session._session.is_closed()
+    assert not session.session.is_closed()
     session.close()
     assert session not in lifetime._open
-    assert session._session.is_closed()
+    assert session.session.is_closed()
 
 
 class InterruptedHoldings(Holdings):
@@ -134,7 +134,7 @@ class InterruptedHoldings(Holdings):
 def test_a_session_has_no_half_made_handle_to_close() -> None:
     holdings = InterruptedHoldings()
     with pytest.raises(KeyboardInterrupt):
-        ZenohOutlet(holdings, "key", Made(None, Publishers(object(), object(), object), lambda _: None))
+        ZenohOutlet(holdings, "key", Publishers(object(), object(), object))
     assert holdings.end("the end") == []
 
 

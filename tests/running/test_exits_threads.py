@@ -14,7 +14,7 @@ import pytest
 from robolink.transport import lifetime
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_declare import Publishers
-from robolink.transport.zenoh_handles import Holdings, Made, ZenohOutlet
+from robolink.transport.zenoh_handles import Holdings, ZenohOutlet
 from tests.support.exits import PATIENCE, SESSIONS, program, run
 
 LONG_END = """
@@ -112,7 +112,7 @@ class Entity:
 def test_a_daemon_thread_that_the_exit_ends_frees_nothing_of_zenohs(monkeypatch: pytest.MonkeyPatch) -> None:
     """Freeing it is work in Zenoh: about one of 50 programs was aborted whose threads closed what they had declared."""
     used, asked = Entity(), Entity()
-    outlet = ZenohOutlet(Holdings(), "key", Made(None, Publishers(used, asked, object), lambda _: None))
+    outlet = ZenohOutlet(Holdings(), "key", Publishers(used, asked, object))
     left = [weakref.ref(used), weakref.ref(asked)]
     del used, asked
     monkeypatch.setattr(lifetime, "_ending", True)

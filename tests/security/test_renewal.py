@@ -17,9 +17,9 @@ from robolink.networks.asked import FIRST_PORT
 from robolink.node import Node
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.security.keystore import Keystore
-from robolink.transport import Transport, connect, permission_watch, port_sharing, zenoh_reunion
+from robolink.transport import Transport, connect, permission_watch, port_sharing, roaming
 from robolink.transport.certificates import Validity
-from robolink.transport.zenoh import ZenohTransport
+from robolink.transport.secured import SecuredTransport
 from tests.support.domains import free_domain
 from tests.support.waits import wait_until
 
@@ -47,7 +47,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Keystore]
 def linked(context: Context) -> set[str]:
     """Return the ids of the sessions to which a context is linked."""
     transport = context.transport
-    assert isinstance(transport, ZenohTransport)
+    assert isinstance(transport, SecuredTransport)
     return {each.session for each in transport.links()}
 
 
@@ -100,13 +100,13 @@ def opened(store: Keystore, name: str, seconds: float) -> Transport:
 def test_who_has_ended_gives_way_and_comes_back_when_renewed(
     store: Keystore, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(zenoh_reunion, "SETTLED_AFTER", 0.5)
+    monkeypatch.setattr(roaming, "SETTLED_AFTER", 0.5)
     sessions = [opened(store, "/robot", 3.0)]  # which holds the port at which the others meet
     try:
         robot = sessions[0]
         sessions.append(laptop := connect("zenoh://", store.domain, enclave="/laptop"))
-        assert isinstance(robot, ZenohTransport)
-        assert isinstance(laptop, ZenohTransport)
+        assert isinstance(robot, SecuredTransport)
+        assert isinstance(laptop, SecuredTransport)
         wait_until(lambda: {each.certificate for each in laptop.links()} == {"/robot"}, LONG)
         wait_until(lambda: not port_sharing.is_taken(f"tcp/127.0.0.1:{FIRST_PORT + store.domain}"), LONG)
         said = capfd.readouterr().err

@@ -12,7 +12,7 @@ from robolink.qos import QoSProfile
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Rule
 from robolink.transport import connect, router
-from robolink.transport.zenoh import ZenohTransport
+from robolink.transport.secured import SecuredTransport
 from robolink.wire import DataKey, format_key
 from tests.support.ports import free_port
 from tests.support.waits import wait_until
@@ -53,8 +53,8 @@ def test_a_router_passes_on_what_an_enclave_may_send(store: Keystore) -> None:
         heard: queue.SimpleQueue[object] = queue.SimpleQueue()
         for name in ("/cmd_vel", "/student/pose"):
             robot.subscribe(key(name), QOS, heard.put)
-        assert isinstance(student, ZenohTransport)
-        refused = ZenohTransport.advertise(student, key("/cmd_vel"), QOS)  # by a program that asks nobody
+        assert isinstance(student, SecuredTransport)
+        refused = student.plain.advertise(key("/cmd_vel"), QOS)  # by a program that asks nobody
         allowed = student.advertise(key("/student/pose"), QOS)
         found: list[bytes] = []
         for _ in range(int(LONG / 0.1)):
@@ -97,8 +97,8 @@ def test_a_router_follows_its_permissions(store: Keystore, capsys: pytest.Captur
         try:
             heard: queue.SimpleQueue[object] = queue.SimpleQueue()
             robot.subscribe(key("/cmd_vel"), QOS, heard.put)
-            assert isinstance(student, ZenohTransport)
-            outlet = ZenohTransport.advertise(student, key("/cmd_vel"), QOS)
+            assert isinstance(student, SecuredTransport)
+            outlet = student.plain.advertise(key("/cmd_vel"), QOS)
             store.permit("/student", [Rule("publish", True, "/cmd_vel")])
 
             def is_heard() -> bool:

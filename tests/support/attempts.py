@@ -98,7 +98,7 @@ def robot(domain: int) -> None:
     def note(sample: Any) -> None:
         arrived.put((str(sample.key_expr), bytes(sample.payload)))
 
-    bare: zenoh.Session = vars(session)["_session"]
+    bare: zenoh.Session = vars(session)["plain"].session
     listen = zenoh.handlers.Callback(note, indirect=False)
     # Of a subscription to ** nobody is told who may not publish all that; so there are narrower ones beside it.
     asked = ("**", *(key(name, domain) for name in (POSE, DRIVE, SCAN)))

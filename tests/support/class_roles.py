@@ -69,7 +69,7 @@ class Robot(Node):
         self._found: dict[str, set[str]] = {"arrived": set(), "called": set(), "tokens": set()}
         transport, domain = self.context.transport, int(os.environ["ROS_DOMAIN_ID"])
         for of in (domain, domain + 1):
-            bare: Any = vars(transport)["_session"]
+            bare: Any = vars(transport)["plain"].session
             for name in (*PUBLISHED, POSE, MARK):
                 there = key(name, of)
                 self._keep(

@@ -15,7 +15,7 @@ from robolink import Context, Future, Node
 from robolink.cli.doctor import gathering
 from robolink.executors import SingleThreadedExecutor
 from robolink.networks import settings
-from robolink.transport import zenoh
+from robolink.transport import joining
 from robolink.transport.zenoh import ZenohTransport
 
 PATIENCE = 30.0
@@ -55,7 +55,7 @@ class Robot(Node):
 
 def put_router_at(patch: pytest.MonkeyPatch, port: int) -> None:
     """Let sessions look for ROS 2's router at this port."""
-    for module in (zenoh, settings, gathering):
+    for module in (joining, settings, gathering):
         patch.setattr(module, "ROS_ROUTER", f"tcp/127.0.0.1:{port}")
 
 

@@ -21,9 +21,9 @@ session = zenoh.open(zenoh.Config.from_json5(json.dumps(listen | {"scouting": {"
 """
 NODE = """
 import os, sys
-from robolink.transport.zenoh import ZenohTransport
+from robolink.transport import open_zenoh
 domain = int(os.environ["ROS_DOMAIN_ID"])
-session = ZenohTransport(domain)
+session = open_zenoh(domain)
 token = session.announce(f"@ros2_lv/{domain}/{session.session_id}/0/0/NN/%/%/" + sys.argv[1])
 """
 WAIT = "\nprint('ready', flush=True)\nsys.stdin.read()\n"

@@ -179,7 +179,7 @@ def test_one_file_with_certificates_serves_all_processes(lab: Lab, host: str) ->
 def test_a_process_that_is_not_let_in_says_why(
     robot: ZenohTransport, lab: Lab, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robolink.transport.zenoh.LINK_WITHIN", 0.1)
+    monkeypatch.setattr("robolink.transport.joining.LINK_WITHIN", 0.1)
     with pytest.raises(TransportError, match=f"tls/127.0.0.1:{lab.port} is taken, .*: it does not trust the authority"):
         ZenohTransport(0, lab.file("peer", "stranger"), {})
 
@@ -188,7 +188,7 @@ def test_a_process_that_is_not_let_in_says_why(
 def test_doctor_tells_of_certificates(
     lab: Lab, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("robolink.transport.zenoh.LINK_WITHIN", 0.1)
+    monkeypatch.setattr("robolink.transport.joining.LINK_WITHIN", 0.1)
 
     def verdict(path: str) -> dict[str, Any]:
         monkeypatch.setenv("ROBOLINK_NETWORK", path)

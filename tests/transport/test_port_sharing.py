@@ -120,7 +120,7 @@ def test_whoever_comes_after_the_holder_takes_its_port(shared: str) -> None:
 
 
 def test_a_stranger_on_the_port_is_named(shared: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.transport.zenoh.LINK_WITHIN", 0.1)
+    monkeypatch.setattr("robolink.transport.joining.LINK_WITHIN", 0.1)
     (endpoint,) = json.loads(Path(shared).read_text())["listen"]["endpoints"]
     refusal = pytest.raises(TransportError, match=f"^{endpoint} is taken, and who listens there has not let this ")
     with socket.create_server(("127.0.0.1", port_of(endpoint))), refusal:

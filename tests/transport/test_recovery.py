@@ -12,17 +12,16 @@ import msgspec
 import pytest
 import zenoh
 
-from robolink.qos import QoSProfile, resolved
-from robolink.transport import addresses, zenoh_cache, zenoh_recovery, zenoh_reunion
+from robolink.qos import QoSProfile
+from robolink.transport import addresses, open_zenoh, roaming, zenoh_cache, zenoh_recovery
 from robolink.transport.base import Sample
 from robolink.transport.reach import Link, Reach
+from robolink.transport.roaming import RoamingTransport
+from robolink.transport.roaming_handles import Holdings, RoamingSubscription
 from robolink.transport.stuck_links import PAUSE, Waiting
-from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_cache import Answer, Asked, newer, parts, together
-from robolink.transport.zenoh_handles import Holdings
 from robolink.transport.zenoh_mending import Mending
 from robolink.transport.zenoh_recovery import Recovery
-from robolink.transport.zenoh_reunion import Former
 from tests.support.ports import free_port
 from tests.support.transports import BEST_EFFORT, CHATTER, KEEP_ALL, OTHER, PLAIN, Ear, latched, stamped, until
 
@@ -81,13 +80,13 @@ def nothing(*_: Any) -> Any:
 @pytest.mark.parametrize("qos", [BEST_EFFORT, latched(1)])
 def test_only_reliable_volatile_topics_are_kept(qos: QoSProfile) -> None:
     recovery = Recovery(Holdings(), "a", 0, [])
-    assert recovery.cache(CHATTER, resolved(qos), nothing, nothing) is None
-    assert recovery.mend(CHATTER, resolved(qos), bool, nothing, nothing) is bool
+    assert recovery.cache(CHATTER, qos, nothing) is None
+    assert recovery.mend(CHATTER, qos, bool, nothing) is None
 
 
 @pytest.mark.parametrize("thinned", [None, ["0/chatter/*/*"]])
 def test_topics_that_limits_thin_are_not_kept_and_none_is_on_this_machine(thinned: list[str] | None) -> None:
-    assert Recovery(Holdings(), "a", 0, thinned).cache(CHATTER, resolved(PLAIN), nothing, nothing) is None
+    assert Recovery(Holdings(), "a", 0, thinned).cache(CHATTER, PLAIN, nothing) is None
 
 
 # --- a router -------------------------------------------------------------------------------------------------------
@@ -101,7 +100,8 @@ class Cut:
         self._router = self._open()
         network = f"tcp/127.0.0.1:{self._port}"
         self.here, self.there = (
-            stack.enter_context(contextlib.closing(ZenohTransport(domain, network, environ))) for _ in range(2)
+            cast(RoamingTransport, stack.enter_context(contextlib.closing(open_zenoh(domain, network, environ))))
+            for _ in range(2)
         )
 
     def _open(self) -> Any:
@@ -209,13 +209,15 @@ def test_nonsense_is_no_question_and_no_answer(make_cut: MakeCut) -> None:
     recovery = net.here._recovery
     pattern = f"{recovery._prefix}/**"
     for payload in (None, b"", b"nonsense", msgspec.msgpack.encode([1, 2])):
-        assert list(net.there._session.get(pattern, payload=payload, timeout=5.0)) == []
-    replies = net.there._session.get(pattern, payload=msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})]), timeout=5.0)
+        assert list(net.there.plain.session.get(pattern, payload=payload, timeout=5.0)) == []
+    replies = net.there.plain.session.get(
+        pattern, payload=msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})]), timeout=5.0
+    )
     (answer,) = [msgspec.msgpack.decode(each.ok.payload.to_bytes(), type=Answer) for each in replies]
     assert answer.key == CHATTER
     greedy = msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})] * 1000)
     every = zenoh.ConsolidationMode.NONE
-    assert len(list(net.there._session.get(pattern, payload=greedy, timeout=5.0, consolidation=every))) == 1
+    assert len(list(net.there.plain.session.get(pattern, payload=greedy, timeout=5.0, consolidation=every))) == 1
     mending = Mending(nothing)
     for ok in (None, zenoh_sample(b"nonsense"), zenoh_sample(msgspec.msgpack.encode(answer))):
         zenoh_recovery._take({OTHER: [mending]}, zenoh_reply(ok))
@@ -254,7 +256,7 @@ def test_calls_without_end_do_not_fill_the_memory(make_cut: MakeCut, monkeypatch
     recovery._known["somebody"] = None
     recovery._is_asking = True  # so that no thread takes them
     for number in range(3000):
-        recovery._on_call(net.there._session, cast(Any, Token(f"{recovery._prefix}/somebody/{number}")))
+        recovery._on_call(net.there.plain.session, cast(Any, Token(f"{recovery._prefix}/somebody/{number}")))
     assert len(recovery._to_ask) == zenoh_recovery.MOST_WAITING
     assert ear.arrived.empty()
 
@@ -262,28 +264,29 @@ def test_calls_without_end_do_not_fill_the_memory(make_cut: MakeCut, monkeypatch
 def test_a_former_session_hears_of_others_until_it_is_left(make_cut: MakeCut) -> None:
     net = make_cut()
     Ear(net.there, qos=KEEP_ALL)
-    (watch,) = (each for each in net.there._holdings.handles if isinstance(each, zenoh_recovery._Watch))
-    former, recovery, leaving = watch._entity, net.there._recovery, Former(None, lambda *_: None)
-    leaving.entities += watch.move_to(net.here._session)
-    former.tokens.gate(Token(f"{recovery._prefix}/somebody/anywhere"))
+    recovery, former = net.there._recovery, net.there.plain
+    (watch,) = (each for each in net.there._holdings.all() if not isinstance(each, RoamingSubscription))
+    tell = watch._handle._gates[0]
+    watch.move_to(net.here.plain)
+    tell(Token(f"{recovery._prefix}/somebody/anywhere"))
     assert "somebody" in recovery._known
-    leaving.close()
-    former.tokens.gate(Token(f"{recovery._prefix}/another/anywhere"))
+    former.close()
+    tell(Token(f"{recovery._prefix}/another/anywhere"))
     assert "another" not in recovery._known
 
 
 def test_a_link_that_stands_still_is_made_again(make_cut: MakeCut, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Link, "leaves_machine", True)
     net = make_cut()
-    former = net.here._session
+    former = net.here.plain.session
 
     def all_wait(connections: list[tuple[Any, Any]]) -> list[Waiting]:
         return [Waiting(*each, PAUSE + 1) for each in connections]
 
-    monkeypatch.setattr(zenoh_reunion, "waiting", all_wait)
+    monkeypatch.setattr(roaming, "waiting", all_wait)
 
     def is_another() -> bool:
         net.here.unstick()
-        return net.here._session is not former
+        return net.here.plain.session is not former
 
     until(is_another)

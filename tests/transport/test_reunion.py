@@ -14,10 +14,10 @@ import pytest
 import zenoh
 
 from robolink.exceptions import SessionReplacedError, TransportClosedError
-from robolink.transport import addresses, network, zenoh_reunion
+from robolink.transport import addresses, network, open_zenoh, roaming
 from robolink.transport.base import Sample
 from robolink.transport.reach import Reach
-from robolink.transport.zenoh import ZenohTransport
+from robolink.transport.roaming import Moves, RoamingTransport
 from robolink.transport.zenoh_sieve import MOST, Sieve
 from robolink.transport.zenoh_tokens import Changes
 from tests.support import stalls
@@ -45,24 +45,30 @@ ANOTHER = "@ros2_lv/0/b/0/0/NN/%/%/laptop"
 class Pair:
     """Two sessions as on networks that leave the machine, of which the first one is opened again."""
 
-    def __init__(self, here: ZenohTransport, there: ZenohTransport) -> None:
+    def __init__(self, here: RoamingTransport, there: RoamingTransport) -> None:
         self.here, self.there = here, there
 
     def reopen(self) -> None:
-        former = self.here._session
+        former = self.here.plain
         self.here.reopen()
-        assert self.here._session is not former
+        assert self.here.plain is not former
+
+
+def opened(domain: int) -> RoamingTransport:
+    transport = open_zenoh(domain, environ={})
+    assert isinstance(transport, RoamingTransport)
+    return transport
 
 
 @pytest.fixture
 def pair(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Pair]:
     monkeypatch.setattr(Reach, "leaves_machine", True)
     monkeypatch.setattr(addresses, "watch", lambda _: None)
-    monkeypatch.setattr(zenoh_reunion, "SETTLED_AFTER", 0.0)  # only watches settle
-    monkeypatch.setattr(zenoh_reunion, "OVERLAP", 0.5)
-    monkeypatch.setattr(zenoh_reunion, "LINKS_WITHIN", PATIENCE)  # on a busy machine
-    there = ZenohTransport(domain, environ={})  # it holds the rendezvous port, and stays
-    with contextlib.closing(there), contextlib.closing(ZenohTransport(domain, environ={})) as here:
+    monkeypatch.setattr(roaming, "SETTLED_AFTER", 0.0)  # only watches settle
+    monkeypatch.setattr(roaming, "OVERLAP", 0.5)
+    monkeypatch.setattr(roaming, "LINKS_WITHIN", PATIENCE)  # on a busy machine
+    there = opened(domain)  # it holds the rendezvous port, and stays
+    with contextlib.closing(there), contextlib.closing(opened(domain)) as here:
         yield Pair(here, there)
 
 
@@ -141,7 +147,7 @@ def test_nobody_sees_a_node_go_whose_session_is_opened_again(pair: Pair) -> None
 
 @pytest.mark.slow
 def test_a_watch_tells_of_what_came_and_went_meanwhile(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_reunion, "SETTLED_AFTER", 5.0)
+    monkeypatch.setattr(roaming, "SETTLED_AFTER", 5.0)
     own, others = pair.here.announce(TOKEN), pair.there.announce(ANOTHER)
     watcher = Watcher(pair.here)
     assert {watcher.next(), watcher.next()} == {(TOKEN, True), (ANOTHER, True)}
@@ -234,45 +240,45 @@ def test_what_has_been_closed_meanwhile_stays_so(pair: Pair, monkeypatch: pytest
     outlet, ear = pair.there.advertise(CHATTER, KEEP_ALL), Ear(pair.here, qos=KEEP_ALL)
     own = pair.here.advertise(OTHER, KEEP_ALL)
     reach(outlet, ear)
-    made = zenoh_reunion.Mover._declare_in
+    made = RoamingTransport._declare_in
 
-    def closed_then(mover: Any, session: Any) -> Any:
-        declared = made(mover, session)
+    def closed_then(here: Any, plain: Any) -> Any:
+        declared = made(here, plain)
         ear.handle.close()
         own.close()
         return declared
 
-    monkeypatch.setattr(zenoh_reunion.Mover, "_declare_in", closed_then)
+    monkeypatch.setattr(RoamingTransport, "_declare_in", closed_then)
     pair.reopen()
     outlet.put(b"late", b"")
-    assert not {ear.handle, own} & set(pair.here._holdings.handles)
+    assert not {ear.handle, own} & set(pair.here._holdings.all())
     assert ear.arrived.empty()
     with pytest.raises(TransportClosedError):
         own.put(b"", b"")
 
 
 def test_a_transport_that_is_closed_meanwhile_leaves_no_session(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
-    opened = []
-    made = zenoh_reunion.Mover._declare_in
+    opened = list[Any]()
+    made = RoamingTransport._declare_in
 
-    def closed_then(mover: Any, session: Any) -> Any:
-        opened.append(session)
-        declared = made(mover, session)
+    def closed_then(here: Any, plain: Any) -> Any:
+        opened.append(plain.session)
+        declared = made(here, plain)
         pair.here.close()
         return declared
 
     pair.here.advertise(CHATTER, KEEP_ALL)
-    monkeypatch.setattr(zenoh_reunion.Mover, "_declare_in", closed_then)
+    monkeypatch.setattr(RoamingTransport, "_declare_in", closed_then)
     pair.here.reopen()
-    until(opened[0].is_closed)
-    assert pair.here._session.is_closed()
+    until(lambda: opened[0].is_closed())
+    assert pair.here.plain.session.is_closed()
 
 
 # --- addresses ------------------------------------------------------------------------------------------------------
 
 
 def test_a_move_is_made_once_for_each_new_address() -> None:
-    state = zenoh_reunion.State()
+    state = Moves()
     here, elsewhere = frozenset({"10.0.0.1"}), frozenset({"10.0.0.2"})
     assert not state.is_news(here)
     assert not state.is_news(frozenset())

@@ -73,7 +73,7 @@ def test_what_tells_a_latched_topics_last_number_waits_for_no_full_link(domain: 
     """Zenoh's own would stop, for 5 s, all that comes by links which its session has dialed."""
     transport = ZenohTransport(domain)
     arrived: queue.SimpleQueue[zenoh.Sample] = queue.SimpleQueue()
-    heartbeats = transport._session.declare_subscriber(f"{CHATTER}/@adv/pub/**", arrived.put)
+    heartbeats = transport.session.declare_subscriber(f"{CHATTER}/@adv/pub/**", arrived.put)
     transport.advertise(CHATTER, LATCHED).put(b"x", b"")
     try:
         heartbeat = arrived.get(timeout=PATIENCE)

@@ -10,7 +10,7 @@ from robolink.impl.log_output import Record
 from robolink.networks.settings import LONGEST_WAIT
 from robolink.transport import zenoh_handles
 from robolink.transport.zenoh_declare import Publishers
-from robolink.transport.zenoh_handles import LARGE, Holdings, Made, ZenohOutlet
+from robolink.transport.zenoh_handles import LARGE, Holdings, ZenohOutlet
 from tests.support.transports import CHATTER
 
 
@@ -28,7 +28,7 @@ class Link:
 
 def outlet(link: Link, monkeypatch: pytest.MonkeyPatch) -> ZenohOutlet:
     monkeypatch.setattr(zenoh_handles, "clocks", SimpleNamespace(monotonic=lambda: link.now))
-    return ZenohOutlet(Holdings(), CHATTER, Made(None, Publishers(link, link, object), lambda _: None))
+    return ZenohOutlet(Holdings(), CHATTER, Publishers(link, link, object))
 
 
 def test_a_large_message_that_found_no_room_is_told_once(

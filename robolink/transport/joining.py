@@ -1,0 +1,150 @@
+"""Joining a Zenoh network: how a session is opened, by whom the rendezvous port is held, and how it is left again."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import time
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import zenoh
+
+from robolink.exceptions import TransportError
+from robolink.networks import refusals
+from robolink.networks.asked import FIRST_PORT, ROS_ROUTER, checked_domain
+from robolink.networks.settings import OFTEN
+from robolink.system import clocks
+from robolink.transport import addresses, certificates, lifetime, network, port_heir, port_sharing
+from robolink.transport import zenoh_declare as declare
+from robolink.transport.reach import Reach, port_of, reach
+
+CLOSE_WITHIN = 0.15
+"""Longest `leave`, in seconds; then it goes on in the background."""
+
+LINK_WITHIN = 3.0
+"""Timeout of the rendezvous port's holder, in seconds; it takes 2 ms, and 1 s on a very busy machine."""
+
+
+class Joined(NamedTuple):
+    """A session that has joined a network."""
+
+    session: zenoh.Session
+    claim: port_sharing.PortClaim | None = None
+    holds_port: bool = False
+    leaves_machine: bool = False
+    """True if others may be met on other machines, at addresses that change."""
+    thinned: list[str] | None = None
+    """Key expressions of the topics of which nothing is sent again after a cut; None if nothing at all is."""
+
+
+def join(
+    domain: int,
+    asked: str | None,
+    environ: Mapping[str, str],
+    secure: Callable[[zenoh.Config], object] | None,
+    named: frozenset[str] = frozenset(),
+) -> Joined:
+    """Open a session on a network; raises TransportError when there is no joining it.
+
+    Args:
+        domain: ROS domain id.
+        asked: Network, as in `robolink.networks.asked.wanted`; None is the one that the environment requests.
+        environ: Environment.
+        secure: Function that closes a configuration to whoever has no keys; None does as the environment says.
+        named: Addresses at which the session is to be found; none for those that Zenoh knows.
+    """
+    if "RUST_LOG" in environ:
+        show_log: Callable[[], object] = zenoh.try_init_log_from_env
+        show_log()
+    port = FIRST_PORT + checked_domain(domain)
+    found = network.plan(asked, domain, environ, secure)
+
+    def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
+        return addresses.named(found.config(holds_port=holds_port), named)
+
+    try:
+        config = load()
+        within = reach(config)
+        thinned = found.thinned() if within.leaves_machine else None
+        if found.meets and within.listens:  # not if it goes nowhere, its certificate having ended
+            joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
+            network.await_host(joined.session, found)
+            return joined._replace(leaves_machine=within.leaves_machine, thinned=thinned)
+        if wrong := certificates.faults(config):
+            raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(wrong)}")
+        return _listen_beside(load)._replace(leaves_machine=within.leaves_machine, thinned=thinned)
+    except zenoh.ZError as error:
+        reasons = [network.reason(error), *certificates.refusals(found.config(holds_port=False))]
+        raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(reasons)}") from None
+
+
+def _listen_beside(load: Callable[[], zenoh.Config]) -> Joined:
+    """Listen on the configured endpoints, or connect to the process of this machine that does so already."""
+    taken, refusals = list[str](), list[str]()
+    for _ in range(2):  # twice, since another process may come first, or the holder leave in between
+        config = load()
+        fixed = port_sharing.fixed_listeners(config)
+        claim = port_sharing.PortClaim(port_of(fixed[0])) if fixed else None
+        taken = [each for each in fixed if (claim and not claim.granted) or port_sharing.is_taken(each)]
+        holders = port_sharing.step_aside(config, taken, OFTEN) if taken else []
+        with contextlib.ExitStack() as undo:
+            if claim:
+                undo.callback(claim.release)
+            try:
+                session = declare.open_session(config)
+            except zenoh.ZError:
+                if taken or not any(map(port_sharing.is_taken, fixed)):
+                    raise
+                continue
+            if not taken or _linked(session):
+                undo.pop_all()
+                return Joined(session, claim, bool(fixed) and not taken)
+            lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
+            refusals = certificates.refusals(config, holders)
+    hint = "; ".join(refusals) or "stop it, or listen elsewhere in this process's configuration"
+    where = " and ".join(taken) or "its port"
+    raise TransportError(f"{where} is taken, and who listens there has not let this process in: {hint}")
+
+
+def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reach) -> Joined:
+    """Listen on the rendezvous port, or connect to its holder."""
+    for _ in range(2):  # twice, since the holder may leave in between
+        claim = port_sharing.PortClaim(port)
+        if claim.granted:
+            try:
+                return Joined(open_session(True), claim, True)
+            except zenoh.ZError:  # taken
+                claim.release()
+        session = open_session(False)
+        if _linked(session):
+            return Joined(session, port_heir.claim_of(claim, port, open_session, within))
+        lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
+    raise TransportError(refusals.of_holder(port, secured=within.secured))
+
+
+def _linked(session: zenoh.Session) -> bool:
+    deadline = clocks.monotonic() + LINK_WITHIN
+    while clocks.monotonic() < deadline:
+        if any(str(link.dst)[4:] != ROS_ROUTER[4:] for link in session.info.links()):  # after tcp/ or tls/
+            return True
+        time.sleep(0.002)
+    return False
+
+
+def leave(claim: port_sharing.PortClaim | None, session: zenoh.Session, entities: list[object]) -> None:
+    """Close a session, but wait no longer than CLOSE_WITHIN.
+
+    Each peer takes Zenoh some 5 ms, one that is frozen or does not shake hands 10 s.
+    """
+
+    def close() -> None:
+        declare.close_session(session)
+        if claim:
+            claim.release()
+
+    lifetime.finish(close, CLOSE_WITHIN)
+    # A daemon thread that is inside Zenoh when the interpreter ends aborts the process: let it come back first.
+    deadline = clocks.monotonic() + CLOSE_WITHIN  # from now on: at the exit of Python 3.12 it has just been closed here
+    while lifetime.in_use(entities) and clocks.monotonic() < deadline:
+        time.sleep(0.001)
