@@ -67,7 +67,7 @@ ANNEXES = {
 
 REGISTRIES = (
     "robolink/cli/shared/commands.py",
-    "robolink/compat/launch_files.py",
+    "robolink/compat/hooks.py",
     "robolink/compat/names.py",
     "robolink/extensions/optional.py",
     "robolink/sim/worldfile.py",

@@ -30,10 +30,8 @@ import os
 import sys
 from pathlib import Path
 
-from robolink.compat.child_processes import hand_on
+from robolink.compat.hooks import hand_on, prepare_opencv, workspace_types
 from robolink.compat.maker import MAKER, has_rclpy, hidden
-from robolink.compat.opencv import prepare_opencv
-from robolink.compat.workspace_types import workspace_types
 from robolink.exceptions import RobolinkError
 from robolink.system.processes import set_ros_version
 from robolink.workspace.modules import FINDER

@@ -103,7 +103,8 @@ ROOMS = {
     "message_filters": "robolink.companions.message_filters",
     "cv_bridge": "robolink.companions.cv_bridge",
     "cv_bridge.boost": "",
-    "cv_bridge.boost.cv_bridge_boost": "robolink.companions.cv_bridge.functions",
+    "cv_bridge.boost.cv_bridge_boost": "robolink.companions.cv_bridge",
+    "cv_bridge.core": "robolink.companions.cv_bridge",
     "image_geometry": "robolink.companions.image_geometry",
     "image_geometry.cameramodels": "robolink.companions.image_geometry",
     "sensor_msgs_py": "",
@@ -112,9 +113,22 @@ ROOMS = {
     "rosidl_parser": "",
     "rosidl_parser.definition": "robolink.message.slot_types",
     "rosidl_runtime_py": "robolink.companions.rosidl_runtime",
+    **{
+        f"rosidl_runtime_py.{name}": "robolink.companions.rosidl_runtime"
+        for name in ("convert", "get_interfaces", "import_message", "set_message", "utilities")
+    },
     "turtlesim_msgs": "robolink.interfaces.turtlesim",
     "ament_index_python": "robolink.companions.ament_index",
+    **{
+        f"ament_index_python.{name}": "robolink.companions.ament_index"
+        for name in ("constants", "packages", "resources", "search_paths")
+    },
     "rosbag2_py": "robolink.companions.rosbag2_py",
+    **{
+        f"rosbag2_py.{name}": "robolink.companions.rosbag2_py._files"
+        for name in ("_info", "_reader", "_writer", "_reindexer", "_message_definitions")
+    },
+    "rosbag2_py._compression_options": "robolink.companions.rosbag2_py._storage",
     "diagnostic_updater": "robolink.companions.diagnostic_updater",
     "nav2_common": "",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",

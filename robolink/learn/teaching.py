@@ -12,8 +12,7 @@ from robolink.grading.languages import Language
 from robolink.learn.exercise import LONGEST_NAME, SETTINGS, Exercise, ExerciseError
 from robolink.learn.report import Report
 from robolink.learn.words import words
-from robolink.scaffold.rendering import rendered
-from robolink.scaffold.writing import written
+from robolink.scaffold.writing import rendered, written
 from robolink.system.files import expanded
 
 FOLDER = "exercises"

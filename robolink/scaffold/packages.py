@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
 
-from robolink.scaffold.licenses import license_files
-from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
-from robolink.scaffold.rendering import rendered
-from robolink.scaffold.writing import Made, written
+from robolink.scaffold.writing import (
+    TEMPLATES,
+    Made,
+    ScaffoldError,
+    checked,
+    checked_module,
+    class_name,
+    rendered,
+    written,
+)
 
 PYTHON, CMAKE = ("ament_python", "ament_cmake")
 """Build types of packages that can be made."""
@@ -138,3 +145,25 @@ def _words(wanted: NewPackage) -> dict[str, str]:
         **{key: escape(text) for key, text in texts.items()},
         "DEPENDENCIES": f"\n{dependencies}" if dependencies else "",
     }
+
+
+FOLDER = "licenses"
+"""Folder of the texts, one for each identifier."""
+
+
+def known_licenses() -> list[str]:
+    """Return the identifiers of the licences whose text is here, such as MIT."""
+    return sorted(each.stem for each in (TEMPLATES / FOLDER).iterdir())
+
+
+def license_files(identifier: str, holder: str) -> dict[str, str]:
+    """Return the file LICENSE of a package by its path; nothing for a licence whose text is not here.
+
+    Args:
+        identifier: The licence, as package.xml names it.
+        holder: Name of who has the copyright.
+    """
+    if identifier not in known_licenses():
+        return {}
+    texts = rendered(FOLDER, {"YEAR": str(time.localtime().tm_year), "HOLDER": holder})
+    return {"LICENSE": texts[identifier]}

@@ -1,19 +1,177 @@
-"""Writer of new projects, nodes and worlds: no file that is there already is changed."""
+"""Files of a new project, node or world: their templates, the names that they take, and what they require."""
 
 from __future__ import annotations
 
 import contextlib
+import json
+import keyword
 import os
-from collections.abc import Mapping
+import re
+import sys
+from collections.abc import Collection, Mapping
+from importlib import metadata
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
-from robolink.scaffold.naming import ScaffoldError, checked, checked_module, class_name
-from robolink.scaffold.rendering import rendered
-from robolink.scaffold.requirement import WHEELS, requirement
+from robolink.exceptions import RobolinkError
 from robolink.system.files import expanded, write_new
 from robolink.workspace import built_in_workspace, user_workspace
 from robolink.workspace.source import Folder
+
+TEMPLATES = Path(__file__).parent / "files"
+"""Folder of the templates: one folder for each kind, with the files as they are to lie."""
+
+_SUFFIX, _DOT = ".template", "dot_"
+
+
+def rendered(kind: str, words: Mapping[str, str]) -> dict[str, str]:
+    """Return the files of a kind by their relative path, in the order of their names.
+
+    Args:
+        kind: Folder of templates: ``project``, ``node`` or ``world``.
+        words: What stands for each placeholder; ``@NAME@`` is filled by ``words["NAME"]``, in names of files too.
+    """
+    folder = TEMPLATES / kind
+    found = sorted(each for each in folder.rglob(f"*{_SUFFIX}"))
+    return {
+        _filled(_path(each.relative_to(folder)), words): _filled(each.read_text(encoding="utf-8"), words)
+        for each in found
+    }
+
+
+def _path(template: Path) -> str:
+    parts = [f".{each[len(_DOT) :]}" if each.startswith(_DOT) else each for each in template.parts]
+    return "/".join(parts).removesuffix(_SUFFIX)
+
+
+def _filled(text: str, words: Mapping[str, str]) -> str:
+    for name, value in words.items():
+        text = text.replace(f"@{name}@", value)
+    return text
+
+
+LONGEST = 60
+"""Most letters of a name."""
+
+_PATTERN = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_DEVICE = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9])", re.IGNORECASE)
+"""Names that no file can have on Windows, with any suffix."""
+_IMPORTED = ("Node", "String", "ExternalShutdownException")
+"""Classes that the program of a new node imports."""
+
+
+class ScaffoldError(RobolinkError, ValueError):
+    """Nothing can be made under this name, or there is something already; the text says what to do."""
+
+
+def checked(kind: str, name: str, taken: Collection[str] = ()) -> str:
+    """Return a name that is fit for files, launch files and Python; raise ScaffoldError for any other.
+
+    Args:
+        kind: Word for what gets the name: ``project``, ``node`` or ``world``.
+        name: The name as somebody typed it.
+        taken: Names of what comes with robolink, which a new thing would hide.
+    """
+    if not _PATTERN.fullmatch(name) or len(name) > LONGEST:
+        raise ScaffoldError(
+            f"'{name[:LONGEST]}' is not a name for a {kind}: a letter, then letters, digits, '_' or '-',"
+            f" {LONGEST} at most; such as my_{kind}"
+        )
+    if any(keyword.iskeyword(each) or keyword.issoftkeyword(each) for each in (name.lower(), name.capitalize())):
+        raise ScaffoldError(f"'{name}' is a word of Python: take another name, such as my_{name.lower()}")
+    if _DEVICE.fullmatch(name):
+        raise ScaffoldError(f"'{name}' is a device of Windows: take another name, such as my_{name.lower()}")
+    if _as_file(name) in map(_as_file, taken):
+        raise ScaffoldError(
+            f"a {kind} '{name}' comes with robolink, and a new one would hide it: take another name, such as my_{name}"
+        )
+    return name
+
+
+def checked_module(kind: str, name: str, taken: Collection[str] = ()) -> str:
+    """Return a name that is fit for a file or folder that Python imports and that hides no other.
+
+    Args:
+        kind: Word for what gets the name: ``package`` or ``node``.
+        name: The name as somebody typed it.
+        taken: More names that a new thing would hide.
+
+    Raises:
+        ScaffoldError: (a ValueError) if it is not valid, or a module of Python or of robolink has it.
+    """
+    from robolink.compat.maker import TOPS  # late: few commands need it
+    from robolink.workspace import program_names
+
+    module = checked(kind, name, {"robolink", *TOPS, *program_names(), *taken}).replace("-", "_")
+    if module.casefold() in map(str.casefold, sys.stdlib_module_names):
+        raise ScaffoldError(f"'{name}' is a module of Python: take another name, such as my_{module}")
+    return name
+
+
+def _as_file(name: str) -> str:
+    """Return a name as file systems compare it that know no capitals, with `-` as `_`."""
+    return name.replace("-", "_").casefold()
+
+
+def class_name(name: str) -> str:
+    """Return the name of a class for a node: `wall_watcher` is WallWatcher.
+
+    >>> class_name("wall_watcher"), class_name("Talker2"), class_name("node")
+    ('WallWatcher', 'Talker2', 'NodeNode')
+    """
+    joined = "".join(part[:1].upper() + part[1:] for part in re.split("[_-]+", name))
+    return f"{joined}Node" if joined in _IMPORTED else joined
+
+
+WHEELS = "wheels"
+"""Folder of a project that has robolink's wheel, where no index has it."""
+
+
+class Requirement(NamedTuple):
+    """Requirement on robolink that can be met on this machine, on others, and in CI."""
+
+    line: str
+    """Line of requirements.txt."""
+    note: str = ""
+    """Comment on it, and a sentence of the README."""
+    step: str = ""
+    """Command that has to be typed before; '' if there is none."""
+    wheel: Path | None = None
+    """Wheel that belongs into the project."""
+
+
+def requirement() -> Requirement:
+    """Return the requirement by which a project gets the robolink that made it."""
+    found = metadata.distribution("robolink")
+    return required(json.loads(found.read_text("direct_url.json") or "{}"), found.version)
+
+
+def required(origin: dict[str, Any], version: str) -> Requirement:
+    """Return the requirement by which a project gets a robolink.
+
+    Args:
+        origin: Content of its direct_url.json; empty if it came from a package index.
+        version: Its version.
+    """
+    url = str(origin.get("url", ""))
+    if not url:
+        return Requirement("robolink[test]")
+    if "vcs_info" in origin:
+        vcs = origin["vcs_info"]
+        return Requirement(f"robolink[test] @ {vcs['vcs']}+{url}@{vcs['commit_id']}")
+    if urlsplit(url).scheme != "file":
+        return Requirement(f"robolink[test] @ {url}")
+    path = Path(url2pathname(urlsplit(url).path))
+    if "dir_info" not in origin and path.suffix == ".whl":
+        kept, step = path.name, "" if path.is_file() else f"cp PATH/OF/{path.name} {WHEELS}/"
+    else:
+        kept = f"robolink-{version}-py3-none-any.whl"
+        step = f'pip wheel --no-deps --wheel-dir {WHEELS} "{path if path.exists() else "PATH/OF/THE/CLONE"}"'
+    note = f"robolink is on no package index yet: its wheel, in {WHEELS}/, belongs into the repository, for CI too."
+    return Requirement(f"./{WHEELS}/{kept}[test]", note, step, path if not step else None)
+
 
 MODELINE = "# yaml-language-server: $schema="
 """First words of a YAML file that tell editors its schema, a file beside it."""

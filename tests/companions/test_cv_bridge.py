@@ -12,7 +12,9 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from robolink.companions import cv_bridge
-from robolink.companions.cv_bridge import CvBridge, CvBridgeError, core, cvtColorForDisplay, functions, getCvType
+from robolink.companions import cv_bridge as core
+from robolink.companions import cv_bridge as functions
+from robolink.companions.cv_bridge import CvBridge, CvBridgeError, cvtColorForDisplay, getCvType
 from robolink.image import ImageError
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image
 from robolink.interfaces.std_msgs.msg import Header

@@ -17,8 +17,7 @@ from numpy.testing import assert_array_equal
 import robolink
 from robolink import Node
 from robolink.companions.opencv import prepare, windows
-from robolink.companions.opencv.shown_images import ShownImages, _shades
-from robolink.companions.opencv.window_system import lack_of_windows
+from robolink.companions.opencv.windows import ShownImages, _shades, lack_of_windows
 from robolink.image import to_array
 from robolink.image.encodings import ImageError
 from robolink.interfaces.sensor_msgs.msg import Image

@@ -29,7 +29,7 @@ from robolink.companions.rosbag2_py import (
     TopicMetadata,
 )
 from robolink.companions.rosbag2_py import _storage as storage
-from robolink.companions.rosidl_runtime.utilities import get_message
+from robolink.companions.rosidl_runtime import get_message
 from robolink.duration import Duration
 from robolink.interfaces.std_msgs.msg import String
 from robolink.message import type_hash

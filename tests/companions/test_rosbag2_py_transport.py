@@ -20,7 +20,7 @@ from robolink.companions.rosbag2_py import (
     ServiceRequestsSource,
     StorageOptions,
 )
-from robolink.companions.rosbag2_py._player import settings_of
+from robolink.companions.rosbag2_py._transport import settings_of
 from robolink.interfaces.rosbag2_interfaces.srv import IsPaused
 from robolink.interfaces.std_msgs.msg import String
 from robolink.qos import QoSProfile

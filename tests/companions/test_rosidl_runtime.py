@@ -12,27 +12,25 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.companions.rosidl_runtime import (
+    get_action,
     get_action_interfaces,
+    get_interface,
     get_interface_packages,
     get_interface_path,
     get_interfaces,
+    get_message,
     get_message_interfaces,
     get_message_slot_types,
+    get_service,
     get_service_interfaces,
     import_message_from_namespaced_type,
+    is_action,
+    is_message,
+    is_service,
     message_to_csv,
     message_to_ordereddict,
     message_to_yaml,
     set_message_fields,
-)
-from robolink.companions.rosidl_runtime.utilities import (
-    get_action,
-    get_interface,
-    get_message,
-    get_service,
-    is_action,
-    is_message,
-    is_service,
 )
 from robolink.exceptions import EncodeError, MessageError, NotFoundError
 from robolink.interfaces import find

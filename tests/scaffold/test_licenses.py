@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.scaffold.licenses import known_licenses, license_files
+from robolink.scaffold.packages import known_licenses, license_files
 
 
 def words(text: str) -> str:

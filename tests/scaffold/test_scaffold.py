@@ -12,10 +12,7 @@ import yaml
 
 from robolink.launch import plan
 from robolink.scaffold import ScaffoldError, new_node, new_project, new_world, writing
-from robolink.scaffold.naming import LONGEST, class_name
-from robolink.scaffold.rendering import TEMPLATES, rendered
-from robolink.scaffold.requirement import required, requirement
-from robolink.scaffold.writing import MODELINE
+from robolink.scaffold.writing import LONGEST, MODELINE, TEMPLATES, class_name, rendered, required, requirement
 from robolink.sim.worldfile import check_world
 from robolink.testing import System
 from robolink.workspace import VARIABLE

@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 import functools
+import os
+import re
+import socket
+import sys
+import threading
 from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
+
 from robolink import logging
-from robolink.companions.opencv.shown_images import ShownImages
-from robolink.companions.opencv.window_system import lack_of_windows
+from robolink.exceptions import RobolinkError
+from robolink.image.arrays import to_message
+from robolink.image.encodings import ImageError
+from robolink.interfaces.sensor_msgs.msg import Image
+from robolink.interfaces.std_msgs.msg import Header
+from robolink.publisher import Publisher
 from robolink.running.defaults import get_defaults
+from robolink.running.timebase import SystemTime
+from robolink.utilities import get_default_context
 
 KEYLESS = -1
 """Return value of `waitKey` if no key was pressed in its time."""
@@ -213,3 +227,183 @@ _OWN = (
 
 _TELLING = {"imshow", "namedWindow", "createTrackbar", "setMouseCallback", "selectROI", "selectROIs"}
 """Functions that want a window to be seen; the others need none, such as `destroyAllWindows` at a program's end."""
+
+
+PATIENCE = 2.0
+"""Longest wait for an X server on another machine, in seconds."""
+
+_X_PORT = 6000
+"""TCP port of the first display of an X server."""
+
+
+def lack_of_windows(cv2: ModuleType) -> str:
+    """Return why OpenCV cannot open windows here, as a clause; '' if it can, or if that is not known.
+
+    Args:
+        cv2: The module cv2.
+    """
+    framework = _framework(cv2)
+    if not framework:
+        return "opencv-python-headless has none"
+    if sys.platform in ("win32", "darwin"):
+        return ""
+    platforms = _bundled_platforms(cv2)
+    asked = re.split("[:;]", os.environ.get("QT_QPA_PLATFORM", ""))[0] if platforms else ""
+    if asked not in ("", "xcb"):
+        return "" if asked in platforms else f"its Qt has no platform '{asked}', which QT_QPA_PLATFORM names"
+    display = os.environ.get("DISPLAY", "")
+    if display:
+        return "" if _answers(display) else f"nobody answers at DISPLAY={display}"
+    if os.environ.get("WAYLAND_DISPLAY") and (not platforms or "wayland" in platforms):
+        return ""
+    return "there is no DISPLAY"
+
+
+def _framework(cv2: ModuleType) -> str:
+    """Return what OpenCV makes its windows with, such as QT; '' if it was built without windows."""
+    ask = getattr(cv2, "currentUIFramework", None)
+    if ask is not None:
+        return str(ask())
+    found = re.search(r"GUI:\s+(\w+)", cv2.getBuildInformation())  # before OpenCV 4.6
+    return "" if found is None or found[1] == "NONE" else found[1]
+
+
+def _bundled_platforms(cv2: ModuleType) -> set[str]:
+    """Return the names of the platforms of the Qt that pip's package brings: xcb; none if it is the system's Qt."""
+    folder = Path(cv2.__file__ or "").parent / "qt" / "plugins" / "platforms"
+    return {each.stem.removeprefix("libq") for each in folder.glob("libq*.so")}
+
+
+def _answers(display: str) -> bool:
+    """Return False if it is certain that no X server listens at a display such as ``:0`` or ``host:10.0``."""
+    found = re.fullmatch(r"(?:\w+/)?(?P<host>[^:/]*):(?P<number>\d{1,4})(?:\.\d+)?", display)
+    if found is None:
+        return True
+    host, number = found["host"], int(found["number"])
+    if host in ("", "unix"):
+        path = f"/tmp/.X11-unix/X{number}"
+        return _connects(f"\0{path}") or _connects(path)
+    return _connects((host, _X_PORT + number))
+
+
+def _connects(address: str | tuple[str, int]) -> bool:
+    """Return True if a server accepts a connection at a path or at a host and port."""
+    try:
+        if isinstance(address, tuple):
+            socket.create_connection(address, PATIENCE).close()
+            return True
+        if sys.platform == "win32":  # never asked there, and it has no such sockets
+            return True
+        with socket.socket(socket.AF_UNIX) as link:
+            link.settimeout(PATIENCE)
+            link.connect(address)
+            return True
+    except OSError:
+        return False
+
+
+class ShownImages:
+    """The images of a program's windows, each on a topic ``/NODE/imshow/WINDOW`` of its first node.
+
+    They are sent while somebody listens only. In virtual time there are no topics: whether a machine has a screen must
+    not change what a simulation publishes.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._publishers: dict[str, tuple[Any, Publisher[Image]]] = {}
+        self._unseen: dict[str, Any] = {}
+
+    def topic(self, window: str) -> str:
+        """Return the topic of a window; '' if the program has no node yet, or runs in virtual time.
+
+        Args:
+            window: The topic's last word.
+        """
+        node = _first_node()
+        return "" if node is None else f"{node.get_fully_qualified_name()}/imshow/{window}"
+
+    def show(self, window: str, image: Any) -> None:
+        """Send an image, or keep it for who comes later.
+
+        Args:
+            window: Name of the window.
+            image: Array of (rows, columns) or (rows, columns, channels).
+        """
+        with self._lock:
+            publisher = self._publisher(window)
+            if publisher is None or not publisher.get_subscription_count():
+                self._unseen[window] = image
+                return
+            self._unseen.pop(window, None)
+            self._send(publisher, image)
+
+    def show_to_newcomers(self) -> None:
+        """Send the images that nobody has seen yet, if somebody listens now."""
+        for window, image in list(self._unseen.items()):
+            self.show(window, image)
+
+    def close(self, window: str) -> None:
+        """Forget a window and its topic.
+
+        Args:
+            window: Name of the window.
+        """
+        with self._lock:
+            self._unseen.pop(window, None)
+            node, publisher = self._publishers.pop(window, (None, None))
+            if node is not None and publisher is not None:
+                node.destroy_publisher(publisher)
+
+    def _publisher(self, window: str) -> Publisher[Image] | None:
+        node = _first_node()
+        owner, found = self._publishers.get(window, (None, None))
+        if node is None or owner is node:
+            return found if node is not None else None
+        try:
+            made: Publisher[Image] = node.create_publisher(Image, self._free_topic(window), 1)
+        except RobolinkError:  # its context ends just now, or it may not publish there
+            return None
+        self._publishers[window] = (node, made)
+        return made
+
+    def _free_topic(self, window: str) -> str:
+        """Return a topic's name for a window, whose name may be any text, that no other window has."""
+        name = re.sub(r"[^A-Za-z0-9]+", "_", window).strip("_") or "window"
+        name = f"window_{name}" if name[0].isdigit() else name
+        taken = {each.topic_name.rpartition("/")[2] for _, each in self._publishers.values()}
+        names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
+        return f"~/imshow/{next(each for each in names if each not in taken)}"
+
+    @staticmethod
+    def _send(publisher: Publisher[Image], image: Any) -> None:
+        node = _first_node()
+        stamp = node.get_clock().now().to_msg() if node is not None else None
+        try:
+            publisher.publish(to_message(_shades(image), "", Header() if stamp is None else Header(stamp=stamp)))
+        except RobolinkError:  # an image that no topic takes, or the end of the context: a window shows nothing either
+            return
+
+
+def _first_node() -> Any:
+    """Return the program's first node, None if it has none or runs in virtual time."""
+    context = get_default_context()
+    if not context.ok() or not isinstance(context.time, SystemTime):
+        return None
+    return next(iter(context.nodes), None)
+
+
+def _shades(image: Any) -> Any:
+    """Return an image as imshow shows it, in 8 bits: floats from 0 to 1 are black to white, 16 bits lose the lower 8.
+
+    Raises ImageError for numbers that imshow does not show.
+    """
+    if image.dtype == np.uint8:
+        return image
+    if image.dtype == np.uint16:
+        return (image >> 8).astype(np.uint8)
+    if image.dtype == np.int8:
+        return (image.astype(np.int16) + 128).astype(np.uint8)
+    if image.dtype.kind == "f":
+        return np.clip(np.nan_to_num(image) * 255.0, 0.0, 255.0).round().astype(np.uint8)
+    raise ImageError(f"imshow shows no images of {image.dtype}")

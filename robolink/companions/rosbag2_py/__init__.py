@@ -1,17 +1,22 @@
 """Bags in Python: the API of ROS 2's rosbag2_py, with readers, writers, metadata, conversion, recorder and player."""
 
-from robolink.companions.rosbag2_py._compression_options import (
-    CompressionMode,
-    CompressionOptions,
-    compression_mode_from_string,
-    compression_mode_to_string,
+from robolink.companions.rosbag2_py._files import (
+    Info,
+    LocalMessageDefinitionSource,
+    Reindexer,
+    SequentialCompressionReader,
+    SequentialCompressionWriter,
+    SequentialReader,
+    SequentialWriter,
+    get_registered_compressors,
+    get_registered_readers,
+    get_registered_serializers,
+    get_registered_writers,
 )
-from robolink.companions.rosbag2_py._info import Info
-from robolink.companions.rosbag2_py._message_definitions import LocalMessageDefinitionSource
-from robolink.companions.rosbag2_py._reader import SequentialCompressionReader, SequentialReader, get_registered_readers
-from robolink.companions.rosbag2_py._reindexer import Reindexer
 from robolink.companions.rosbag2_py._storage import (
     BagMetadata,
+    CompressionMode,
+    CompressionOptions,
     ConverterOptions,
     FileInformation,
     MessageDefinition,
@@ -22,6 +27,8 @@ from robolink.companions.rosbag2_py._storage import (
     StorageOptions,
     TopicInformation,
     TopicMetadata,
+    compression_mode_from_string,
+    compression_mode_to_string,
     convert_rclcpp_qos_to_rclpy_qos,
     get_default_storage_id,
     to_rclcpp_qos_vector,
@@ -34,13 +41,6 @@ from robolink.companions.rosbag2_py._transport import (
     RecordOptions,
     ServiceRequestsSource,
     bag_rewrite,
-)
-from robolink.companions.rosbag2_py._writer import (
-    SequentialCompressionWriter,
-    SequentialWriter,
-    get_registered_compressors,
-    get_registered_serializers,
-    get_registered_writers,
 )
 
 __all__ = [

@@ -1,24 +1,76 @@
-"""Recorder of topics in a program, with its options."""
+"""Recorder of topics in a program, with its options, and the session that recorder and player have."""
 
 from __future__ import annotations
 
 import threading
 import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from robolink.bag.background_spin import BackgroundSpin
 from robolink.bag.recording import RecordSettings
 from robolink.bag.recording.served import ServedRecording
 from robolink.bag.selection import SERVICE_EVENT, Selection
 from robolink.bag.static_topics import read_static_topics
 from robolink.bag.storage_options import chunk_compression
 from robolink.bag.topic import BagError
-from robolink.companions.rosbag2_py._session import LOOK, Session, level_of
 from robolink.companions.rosbag2_py._storage import StorageOptions, get_default_storage_id
-from robolink.exceptions import DocumentError
+from robolink.context import Context
+from robolink.exceptions import DocumentError, nearest
 from robolink.logging import LoggingSeverity
+from robolink.node import Node
 from robolink.qos import QoSProfile
+
+LOOK = 0.1
+"""Seconds between two looks at what may have ended a recording or a playback."""
+
+
+class Session:
+    """Session with one node.
+
+    Args:
+        name: Name of the node.
+        level: Level from which it logs.
+        arguments: Arguments of ROS for the node, such as remappings.
+    """
+
+    def __init__(self, name: str, level: LoggingSeverity, arguments: Sequence[str] = ()) -> None:
+        self._context = Context()
+        self._context.init()
+        self._spin: BackgroundSpin | None = None
+        self.node = Node(name, context=self._context, cli_args=list(arguments) or None, start_parameter_services=False)
+        self.node.get_logger().set_level(level)
+
+    @property
+    def is_over(self) -> bool:
+        """True once the network has ended."""
+        return not self._context.ok()
+
+    def start_spin(self) -> None:
+        """Spin the node on a thread, which answers its services; nothing if one does already."""
+        if self._spin is None:
+            self._spin = BackgroundSpin(self.node)
+
+    def stop_spin(self) -> None:
+        """End that thread, if there is one."""
+        spin, self._spin = self._spin, None
+        if spin is not None:
+            spin.close()
+
+    def close(self) -> None:
+        """End the session. Safe to call twice."""
+        self.stop_spin()
+        self._context.try_shutdown()
+
+
+def level_of(name: str) -> LoggingSeverity:
+    """Return the level of a name. Raises BagError (a RuntimeError) for an unknown one."""
+    levels = LoggingSeverity.__members__
+    if name.upper() not in levels:
+        raise BagError(f"no log level named '{name[:50]}'{nearest(name.upper(), levels)}")
+    return levels[name.upper()]
 
 
 @dataclass

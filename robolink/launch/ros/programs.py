@@ -10,8 +10,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from robolink.arguments.overrides import Override
 from robolink.arguments.parameter_file import parse_parameter_file, parse_parameter_value, read_parameter_file
-from robolink.companions.ament_index.packages import package_not_here
-from robolink.companions.ament_index.search_paths import get_search_paths
+from robolink.companions.ament_index import get_search_paths, package_not_here
 from robolink.compat.names import snake_case
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, NotFoundError, closest, nearest

@@ -19,8 +19,8 @@ from types import FrameType, ModuleType
 from typing import Any, NoReturn
 
 from robolink import compat
-from robolink.companions.ament_index.packages import NOT_HERE, package_not_here, packages_may_lack
-from robolink.compat.launch_files import names_of_launch_files
+from robolink.companions.ament_index import NOT_HERE, package_not_here, packages_may_lack
+from robolink.compat.hooks import names_of_launch_files
 from robolink.compat.maker import TOPS
 from robolink.exceptions import DocumentError, RobolinkError, closest
 from robolink.interfaces.standard import FOLDER

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.companions.ament_index.packages import package_not_here
+from robolink.companions.ament_index import package_not_here
 from robolink.exceptions import DocumentError, nearest
 from robolink.launch.entry import MOST_PROCESSES, ArgumentHelp, Entry
 from robolink.launch.lookup import home_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from robolink.companions.ament_index.packages import get_package_prefix, get_package_share_directory
+from robolink.companions.ament_index import get_package_prefix, get_package_share_directory
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.launch.ros.launch.bases import LaunchContext, SomeSubstitutionsType, Substitution
 from robolink.launch.ros.launch.substitutions import PathJoinSubstitution, SubstitutionFailure

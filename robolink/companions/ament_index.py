@@ -1,4 +1,12 @@
-"""Packages by name, and their folders."""
+"""Index of packages and their folders: the API of ROS 2's ament_index_python.
+
+A package is what `robolink run PACKAGE EXECUTABLE` takes for one (see `robolink.workspace.packages`): a folder below
+the `src/` of the workspace, the workspace itself by its folder's name, `robolink`. Nothing is built or installed, so
+the **share directory of a package is its own folder**: `launch/`, `config/` and `urdf/` lie there as they would after
+`setup.py` has copied them to share/PACKAGE. Where it gives them other names or places, it is a folder of links that has
+both (see `robolink.workspace.share`). A package that has only types, such as geometry_msgs, has the folder of its
+module. After these, the folders of AMENT_PREFIX_PATH are searched, as in ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +17,133 @@ import warnings
 from collections.abc import Iterator
 from contextvars import ContextVar
 from pathlib import Path
+from typing import Literal
 
-from robolink.companions.ament_index.search_paths import get_search_paths
 from robolink.exceptions import MessageError, NotFoundError
+from robolink.interfaces import KINDS, names
 from robolink.interfaces.standard import FOLDER, INTERFACES
 from robolink.workspace.find import find_package, list_packages
-from robolink.workspace.installed import installed_packages
+from robolink.workspace.installed import installed_packages, prefixes
 from robolink.workspace.programs import program_folder, program_names
 from robolink.workspace.ros_programs import instead_of
 from robolink.workspace.share import share_directory
+
+__all__ = [
+    "InvalidResourceNameError",
+    "InvalidResourceTypeNameError",
+    "PackageNotFoundError",
+    "RESOURCE_INDEX_SUBFOLDER",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+    "get_resource",
+    "get_resource_types",
+    "get_resources",
+    "get_search_paths",
+    "has_resource",
+]
+
+
+def get_search_paths() -> list[str]:
+    """Return the existing folders in AMENT_PREFIX_PATH, and those of COLCON_PREFIX_PATH; none if neither is set.
+
+    ROS 2 raises an error then; here packages are found without it.
+    """
+    return prefixes()
+
+
+RESOURCE_INDEX_SUBFOLDER = "share/ament_index/resource_index"
+AMENT_PREFIX_PATH_ENV_VAR = "AMENT_PREFIX_PATH"
+
+
+_PACKAGES, _TYPES = "packages", "rosidl_interfaces"
+"""Types of the resources that exist without any index."""
+
+
+class InvalidResourceTypeNameError(MessageError):
+    """A resource type whose name has a path separator."""
+
+
+class InvalidResourceNameError(MessageError):
+    """A resource whose name has a path separator."""
+
+
+def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
+    """Return the text of a resource and the prefix of its package.
+
+    Args:
+        resource_type: Type of the resource, such as ``packages``.
+        resource_name: Name of the resource.
+
+    Raises:
+        NotFoundError: (a LookupError) if there is none.
+        InvalidResourceTypeNameError: if the type has a path separator.
+        InvalidResourceNameError: if the name has a path separator.
+    """
+    _check(resource_type, resource_name)
+    own = _own(resource_type)
+    if resource_name in own:
+        text = "\n".join(_types(resource_name)) if resource_type == _TYPES else ""
+        return text, own[resource_name]
+    for prefix in get_search_paths():
+        file = Path(prefix) / RESOURCE_INDEX_SUBFOLDER / resource_type / resource_name
+        if file.is_file():
+            return file.read_text(encoding="utf-8"), prefix
+    raise NotFoundError(f"resource of type '{resource_type}'", resource_name, get_resources(resource_type))
+
+
+def get_resources(resource_type: str) -> dict[str, str]:
+    """Return all resources of the type `resource_type`: name to prefix."""
+    _check(resource_type, "any")
+    found = dict(_own(resource_type))
+    for prefix in get_search_paths():
+        for each in _listed(Path(prefix) / RESOURCE_INDEX_SUBFOLDER / resource_type):
+            if each.is_file():
+                found.setdefault(each.name, prefix)
+    return found
+
+
+def get_resource_types() -> set[str]:
+    """Return the types of all resources."""
+    folders = (each for prefix in get_search_paths() for each in _listed(Path(prefix) / RESOURCE_INDEX_SUBFOLDER))
+    return {_PACKAGES, _TYPES, *(each.name for each in folders if each.is_dir())}
+
+
+def has_resource(resource_type: str, resource_name: str) -> str | Literal[False]:
+    """Return the prefix of a resource (`resource_type`, `resource_name`); False if there is none."""
+    _check(resource_type, resource_name)
+    return get_resources(resource_type).get(resource_name, False)
+
+
+def _own(resource_type: str) -> dict[str, str]:
+    """Return the resources that the packages of the workspace and robolink's own have without any index."""
+    if resource_type == _PACKAGES:
+        return get_packages_with_prefixes()
+    if resource_type == _TYPES:
+        prefixes = get_packages_with_prefixes()
+        with_types = {name.partition("/")[0] for kind in KINDS for name in names(kind)}
+        return {package: prefixes[package] for package in sorted(with_types) if package in prefixes}
+    return {}
+
+
+def _types(package: str) -> list[str]:
+    start = f"{package}/"
+    return [f"{name.removeprefix(start)}.{kind}" for kind in KINDS for name in names(kind) if name.startswith(start)]
+
+
+def _listed(folder: Path) -> list[Path]:
+    return sorted(each for each in folder.iterdir() if not each.name.startswith(".")) if folder.is_dir() else []
+
+
+def _check(resource_type: str, resource_name: str) -> None:
+    assert resource_type, "The resource type must not be empty"
+    assert resource_name, "The resource name must not be empty"
+    if "/" in resource_type or "\\" in resource_type:
+        raise InvalidResourceTypeNameError(f"Resource type '{resource_type}' is invalid")
+    if "/" in resource_name or "\\" in resource_name:
+        raise InvalidResourceNameError(f"Resource name '{resource_name}' is invalid")
+
 
 NOT_HERE = Path(os.path.abspath(os.sep)) / "package-not-here"  # noqa: PTH100 - on Windows with its drive
 """Folder, which does not exist, of packages that are not here, while `packages_may_lack`."""

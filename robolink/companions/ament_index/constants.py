@@ -1,4 +1,0 @@
-"""Location of ROS 2's index of installed packages."""
-
-RESOURCE_INDEX_SUBFOLDER = "share/ament_index/resource_index"
-AMENT_PREFIX_PATH_ENV_VAR = "AMENT_PREFIX_PATH"
