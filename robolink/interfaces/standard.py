@@ -13,6 +13,7 @@ Other packages add theirs, which are read and imported in the same way, by an en
 from __future__ import annotations
 
 import functools
+import itertools
 import os
 import sys
 import threading
@@ -198,12 +199,19 @@ class StandardFinder:
         assert folder is not None
         module.__file__, readme = str(folder / kind), folder / "README.md"
         if not kind:
-            module.__doc__ = readme.read_text(encoding="utf-8") if readme.is_file() else None
+            module.__doc__ = readme.read_text(encoding="utf-8") if readme.is_file() else _purpose(package, folder)
             return
         names = types_of(package, kind)
         vars(module)["__all__"] = list(names)
         module.__getattr__ = lambda name: _attribute(module, package, kind, name)  # type: ignore[method-assign]
         module.__dir__ = lambda: sorted({*vars(module), *names})  # type: ignore[method-assign]
+
+
+def _purpose(package: str, folder: Path) -> str:
+    """Return the text about a package without a README: the comment at the head of its first type."""
+    first = next(file for kind in KINDS for file in sorted((folder / kind).glob(f"*.{kind}")))
+    lines = itertools.takewhile(lambda line: line.startswith("#"), first.read_text(encoding="utf-8").splitlines())
+    return "\n".join([f"# {package}\n", *(line.removeprefix("#").strip() for line in lines)])
 
 
 def _attribute(module: ModuleType, package: str, kind: str, name: str) -> Any:

@@ -123,4 +123,5 @@ def _any_sensor(kind: type) -> Schema:
     """Return the schema of an item in a list of sensors."""
     if kind is not Sensor:
         raise NotImplementedError(kind)
-    return {"oneOf": [{"$ref": f"#/definitions/{each.description.__name__}"} for each in SENSORS.usable().values()]}
+    structs = [each.description.__name__ for each in SENSORS.usable().values()]
+    return {"oneOf": [{"$ref": f"#/definitions/{each}"} for each in structs]}

@@ -256,15 +256,12 @@ def _kind(described: type[Sensor], message: str, convert: str) -> SensorKind:
 
 
 _KINDS = {
-    each.description.__struct_fields__[0]: each
-    for each in (
-        _kind(Lidar, "sensor_msgs.msg:LaserScan", "scan_message"),
-        _kind(Bumper, "std_msgs.msg:Bool", "bumper_message"),
-        _kind(Imu, "sensor_msgs.msg:Imu", "imu_message"),
-        _kind(RangeFinder, "sensor_msgs.msg:Range", "range_message"),
-        _kind(Encoders, "sensor_msgs.msg:JointState", "joint_state_message"),
-        _kind(Camera, "sensor_msgs.msg:Image", "image_message"),
-    )
+    "lidar": _kind(Lidar, "sensor_msgs.msg:LaserScan", "scan_message"),
+    "bumper": _kind(Bumper, "std_msgs.msg:Bool", "bumper_message"),
+    "imu": _kind(Imu, "sensor_msgs.msg:Imu", "imu_message"),
+    "range_finder": _kind(RangeFinder, "sensor_msgs.msg:Range", "range_message"),
+    "encoders": _kind(Encoders, "sensor_msgs.msg:JointState", "joint_state_message"),
+    "camera": _kind(Camera, "sensor_msgs.msg:Image", "image_message"),
 }
 
 
