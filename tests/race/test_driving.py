@@ -10,9 +10,8 @@ import pytest
 
 from robolink.exceptions import NotFoundError
 from robolink.grading.mistakes import Mistake
-from robolink.race.apart import race_all, run_one
+from robolink.race.apart import programs_of, race_all, run_one
 from robolink.race.driving import Drive
-from robolink.race.programs import programs_of
 from robolink.race.races import RACES
 from robolink.race.result import Result, as_csv, ranked, rows, table
 from robolink.sim.worldfile import check_world

@@ -52,8 +52,7 @@ def race(
         raise typer.BadParameter("--json and --csv do not go together")
     from robolink.cli.shared.languages import spoken
     from robolink.grading.mistakes import Mistake
-    from robolink.race.apart import race_all
-    from robolink.race.programs import programs_of, without_program
+    from robolink.race.apart import programs_of, race_all, without_program
     from robolink.race.races import RACES as RULES
     from robolink.race.result import Result, noted, rows, table, words
     from robolink.race.result import as_csv as csv_of

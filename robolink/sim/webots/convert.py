@@ -13,8 +13,7 @@ from robolink.exceptions import DocumentError
 from robolink.sim.checks.overlaps import CROWDED
 from robolink.sim.checks.worlds import mass_problems, problems
 from robolink.sim.description import FloorSettings, Obstacle, Settings, Wall, WorldDescription
-from robolink.sim.webots.footprint import footprint, merged
-from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, WORLDS, Placement, first_colour, rounded
+from robolink.sim.webots.geometry import HEIGHTS, ORIGIN, WORLDS, Placement, first_colour, footprint, merged, rounded
 from robolink.sim.webots.robots import Converted, robot
 from robolink.sim.webots.scene_tree import Arena, Found, Thing
 from robolink.sim.webots.vrml_node import Node

@@ -12,9 +12,8 @@ from robolink.view.channels import Channel
 from robolink.view.protocol import answers, requests
 from robolink.view.protocol.answers import ERROR, FOXGLOVE_WEBSOCKET, ROBOLINK, WARNING
 from robolink.view.protocol.requests import ProtocolError
-from robolink.view.server.calling import Calling
 from robolink.view.server.outbox import Outbox, Wire
-from robolink.view.server.publishing import Publishing
+from robolink.view.server.publishing import Calling, Publishing
 
 if TYPE_CHECKING:
     from robolink.view.server.hub import Hub

@@ -12,8 +12,8 @@ from robolink.sim.description import RobotDescription, Shape, WorldDescription
 from robolink.sim.quantities import Pose
 from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor
 from robolink.sim.webots import read
+from robolink.sim.webots.robots import _side as side_of
 from robolink.sim.webots.sensors import rate_near
-from robolink.sim.webots.wheels import _side as side_of
 
 HEADER = "#VRML_SIM R2023b utf8\n"
 BODY = "Shape { geometry Box { size 0.4 0.3 0.2 } }"
