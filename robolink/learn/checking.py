@@ -18,7 +18,7 @@ from robolink.grading.mistakes import Mistake, mistake_elsewhere, mistake_in, mi
 from robolink.grading.process import run_apart
 from robolink.learn.exercise import CHECK, Exercise, ExerciseError, read_exercise
 from robolink.learn.report import Report
-from robolink.learn.trial import Told, Trial
+from robolink.learn.trial import Reported, Trial
 from robolink.testing.expectations import NodeFailure
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def _ran(trial: Trial) -> Mistake | None:
         _check_of(trial.exercise)(trial)
         if trial._system is not None:
             trial.system.check()
-    except Told:
+    except Reported:
         return _of_program(trial)
     except ExerciseError as error:
         return Mistake("check", str(error))

@@ -114,18 +114,18 @@ class StudentFolder:
     def reset(self, exercise: Exercise) -> Path | None:
         """Write the given file of an exercise again; return where the student's own is kept, None if there was none."""
         path, given = self.file_of(exercise), exercise.given_text(self.language).encode()
-        kept = _free(path) if os.path.lexists(path) else None
-        if kept is not None:
-            path.rename(kept)
+        saved = _free(path) if os.path.lexists(path) else None
+        if saved is not None:
+            path.rename(saved)
         try:
             write_new(path, given)
         except OSError:
-            if kept is not None:
-                kept.rename(path)
+            if saved is not None:
+                saved.rename(path)
             raise
         with self._changed() as progress:
             progress.forget(exercise.name)
-        return kept
+        return saved
 
     def next_hint(self, exercise: Exercise) -> int:
         """Return the number of the next hint, from 1 on; the last one again after the last, and 0 if there are none."""

@@ -45,7 +45,7 @@ def course_listed(course: list[Exercise], language: Language, below: str = "") -
 
 
 def next_step(folder: StudentFolder) -> Iterator[str]:
-    """Yield what is next, in lines."""
+    """Yield the next step, in lines."""
     following = folder.next
     if following is None:
         yield words(folder.language, "all done")

@@ -63,7 +63,7 @@ class PageExercises:
         self._open = contextlib.ExitStack()
         self._saves = 0
         for each in folder.course:
-            each.settings  # noqa: B018 - a mistake in one of them is told now, and by no page
+            each.settings  # noqa: B018 - a mistake in one of them is message now, and by no page
         self._checker = threading.Thread(target=self._work, name="robolink learn's checks", daemon=True)
 
     # What the server asks for
@@ -150,12 +150,12 @@ class PageExercises:
 
     def _reset(self, exercise: Exercise) -> list[Operation]:
         self._folder.reload()
-        kept = self._folder.reset(exercise)
+        saved = self._folder.reset(exercise)
         self._reports.pop(exercise.name, None)
-        key = "reset new" if kept is None else "reset"
-        told = words(self._folder.language, key, file=exercise.file, kept="" if kept is None else kept.name)
+        key = "reset new" if saved is None else "reset"
+        message = words(self._folder.language, key, file=exercise.file, saved="" if saved is None else saved.name)
         self._tell(self.state())
-        return [{"op": "status", "level": WARNING, "message": told}]
+        return [{"op": "status", "level": WARNING, "message": message}]
 
     def _speak(self, name: str) -> None:
         language: Language | None = next((each for each in LANGUAGES if each == name), None)
@@ -259,12 +259,12 @@ class _Watcher(PeriodicThread):
 
 
 def _shown_report(exercise: Exercise, number: int, report: Report, language: Language) -> dict[str, Any]:
-    told = findings(exercise, report, language)
+    message = findings(exercise, report, language)
     return {
         "number": number,
         "passed": report.passed,
         "seconds": round(report.seconds, 1),
-        "findings": [{"mark": mark, "text": fit(text), "below": [*map(fit, below)]} for mark, text, below in told],
+        "findings": [{"mark": mark, "text": fit(text), "below": [*map(fit, below)]} for mark, text, below in message],
         "printed": [*map(fit, printed_lines(report.printed, language))],
         "track": report.track,
     }

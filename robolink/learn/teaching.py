@@ -84,17 +84,17 @@ def _of_given(exercise: Exercise, report: Report, language: Language) -> Proof:
         return Proof(exercise, False, words(language, "broken check", text=report.mistake.text))
     if report.passed:
         return Proof(exercise, False, words(language, "passes already", file=file))
-    return Proof(exercise, True, words(language, "fails", file=file, text=_told(file, report, language)))
+    return Proof(exercise, True, words(language, "fails", file=file, text=_sentence(file, report, language)))
 
 
 def _of_solution(exercise: Exercise, solution: Path, report: Report, language: Language) -> Proof:
     if report.passed:
         return Proof(exercise, True, words(language, "passes", file=solution.name, seconds=report.seconds))
-    text = _told(solution.name, report, language)
+    text = _sentence(solution.name, report, language)
     return Proof(exercise, False, words(language, "fails", file=solution.name, text=text))
 
 
-def _told(file: str, report: Report, language: Language) -> str:
+def _sentence(file: str, report: Report, language: Language) -> str:
     """Return the sentence that says most of why a check failed."""
     mistake = report.mistake
     if mistake is None:

@@ -22,7 +22,7 @@ SEED = 1
 """Seed of every check, so that each has the same outcome each time."""
 
 
-class Told(Exception):  # noqa: N818 - a check ends with it, and nothing is wrong
+class Reported(Exception):  # noqa: N818 - a check ends with it, and nothing is wrong
     """The first thing that is not as it should be was told: the check ends here."""
 
 
@@ -120,7 +120,7 @@ class Trial:
         outcome = results[name].good if good else results[name].bad
         self.lines.append(Line(bool(good), outcome[self.language].format(**values)))
         if not good:
-            raise Told
+            raise Reported
 
     def heard(self, topic: str, condition: Callable[[Any], object] | None = None, within: float = 5.0) -> Any:
         """Wait for a message, and return it; None if none came that meets the condition.

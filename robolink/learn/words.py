@@ -50,8 +50,8 @@ WORDS: Words = {
     "all here": ("all exercises are here already", "todos os exercícios já estão aqui"),
     "go": ("cd {folder}, then: robolink learn", "cd {folder}, e depois: robolink learn"),
     "reset": (
-        "{file} is as it was at the beginning; yours is {kept}",
-        "{file} está como no início; o seu está em {kept}",
+        "{file} is as it was at the beginning; yours is {saved}",
+        "{file} está como no início; o seu está em {saved}",
     ),
     "reset new": ("{file} is there again", "{file} está lá de novo"),
     "hint": ("hint {number} of {all}: {text}", "dica {number} de {all}: {text}"),

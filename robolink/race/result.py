@@ -105,8 +105,8 @@ def error_of(result: Result, language: Language = "en") -> str:
     if mistake is None:
         return ""
     head = words(language, mistake.kind, file=Path(result.program).name, line=mistake.line, text=mistake.text)
-    told = mistake.text.partition("\n")[0]
-    return f"{head} {told}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
+    text = mistake.text.partition("\n")[0]
+    return f"{head} {text}" if mistake.kind in ("syntax", "exception", "elsewhere") else head
 
 
 def noted(result: Result, language: Language = "en") -> str:

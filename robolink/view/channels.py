@@ -15,7 +15,7 @@ Take = Callable[[int, bytes, bytes], object]
 """Function of a message: its time of arrival in ns since the epoch, its payload, and its sender's attachment."""
 
 
-class Kept(NamedTuple):
+class Retained(NamedTuple):
     """Message that a latched channel keeps for clients that subscribe later; its fields are those of Take."""
 
     at: int
@@ -164,8 +164,8 @@ class Source(Protocol):
     def leave(self, channel: Channel) -> None:
         """Receive it no longer."""
 
-    def kept(self, channel: Channel) -> list[Kept]:
-        """Return what a late subscriber of a latched channel is to get."""
+    def retained(self, channel: Channel) -> list[Retained]:
+        """Return the messages that a late subscriber of a latched channel gets."""
 
     def sweep(self) -> None:
         """Deliver all that has arrived."""
@@ -174,7 +174,7 @@ class Source(Protocol):
         """Return how many publishers and subscriptions a channel has."""
 
     def capabilities(self) -> list[str]:
-        """Return what can be done here, in Foxglove's words."""
+        """Return the server's capabilities, in Foxglove's words."""
 
     def information(self) -> dict[str, Any]:
         """Return fields of `serverInfo`: those of `robolink`, and `dataStartTime` and `dataEndTime` of a bag."""

@@ -53,7 +53,7 @@ class Motor:
         self._joints, self._name = joints, name
         self._target: float | None = None
         self._velocity = MAX_VELOCITY
-        self.is_told = False
+        self.is_set = False
 
     def getName(self) -> str:
         """Return the name that the motor has in the world."""
@@ -64,14 +64,14 @@ class Motor:
         if math.isnan(position):
             self._joints.warn(f"motor '{self._name}': setPosition was given NaN: ignored")
             return
-        self._target, self.is_told = float(position), True
+        self._target, self.is_set = float(position), True
 
     def setVelocity(self, velocity: float) -> None:
         """Set the velocity in rad/s: the limit on the way to a position, or the speed of turning without end."""
         if not math.isfinite(velocity):
             self._joints.warn(f"motor '{self._name}': setVelocity was given {velocity:g}: ignored")
             return
-        self._velocity, self.is_told = float(velocity), True
+        self._velocity, self.is_set = float(velocity), True
 
     def getVelocity(self) -> float:
         """Return the velocity that was set, in rad/s."""

@@ -62,7 +62,7 @@ class Robot:
         self.positions: dict[str, float] = {}
         self._first = self._stamp = self._sent_at = 0
         self._step_ns, self._sent = 0, dict[str, float]()
-        self._told: set[str] = set()
+        self._warned: set[str] = set()
         group = ReentrantCallbackGroup()
         self._command: Publisher[JointState] | None = None
         for topic in ("joint_states", "encoders"):
@@ -164,10 +164,10 @@ class Robot:
         executor = self._node.executor
         if executor is not None and executor.spinning:
             raise StepError("robot.step() is for the loop of a program that does not spin: leave it out of callbacks")
-        wanted = int((duration or self.getBasicTimeStep()) * 1e6)
+        period = int((duration or self.getBasicTimeStep()) * 1e6)
         start = self._stamp
         while self._node.context.ok():
-            if start and self._stamp - start >= wanted:
+            if start and self._stamp - start >= period:
                 return 0
             start = start or self._stamp
             try:
@@ -199,7 +199,7 @@ class Robot:
 
     def _tell_motors(self) -> None:
         """Send the commands of all motors in one message, if they have changed or the last one is old."""
-        speeds = {name: motor.speed() for name, motor in list(self._motors.items()) if motor.is_told}
+        speeds = {name: motor.speed() for name, motor in list(self._motors.items()) if motor.is_set}
         speeds = {name: speed for name, speed in speeds.items() if name in self.positions}
         passed = self._stamp - self._sent_at
         if self._command and speeds and (speeds != self._sent or not 0 <= passed < AGAIN):
@@ -226,6 +226,6 @@ class Robot:
 
     def warn(self, text: str) -> None:
         """Log a warning once."""
-        if text not in self._told:
-            self._told.add(text)
+        if text not in self._warned:
+            self._warned.add(text)
             self._node.get_logger().warning(text)

@@ -45,11 +45,11 @@ class RobotTopics:
     def of_type(self, message: type[Message]) -> list[str]:
         """Return the names of the robot's topics of this type, without their common prefix.
 
-        Topics that only have subscriptions, or publishers of this node alone, are no sensors.
+        Topics that only have subscriptions, or publishers of this node alone, are not sensors.
         """
-        wanted, base = type_name(message), self._base + "/"
+        expected, base = type_name(message), self._base + "/"
         found = self.node.get_topic_names_and_types()
-        names = [name for name, types in found if wanted in types and name.startswith(base)]
+        names = [name for name, types in found if expected in types and name.startswith(base)]
         return [name.removeprefix(base) for name in names if self._is_of_others(name)]
 
     def _is_of_others(self, topic: str) -> bool:
@@ -59,8 +59,8 @@ class RobotTopics:
 
     def elsewhere(self) -> list[str]:
         """Return the joint_states topics of all robots."""
-        wanted, found = type_name(JointState), self.node.get_topic_names_and_types()
-        names = [name for name, types in found if wanted in types and name.endswith("/joint_states")]
+        expected, found = type_name(JointState), self.node.get_topic_names_and_types()
+        names = [name for name, types in found if expected in types and name.endswith("/joint_states")]
         return [name for name in names if self.node.count_publishers(name)]
 
     def find(self, message: type[Message], name: str, *, or_only: bool) -> str:

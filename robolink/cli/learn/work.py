@@ -122,9 +122,9 @@ def reset(name: str, language: Language | None) -> None:
     """Write the given file of an exercise again."""
     folder = folder_here(language)
     exercise = folder.chosen(name)
-    kept = folder.reset(exercise)
-    key = "reset new" if kept is None else "reset"
-    say(words(folder.language, key, file=exercise.file, kept="" if kept is None else kept.name))
+    saved = folder.reset(exercise)
+    key = "reset new" if saved is None else "reset"
+    say(words(folder.language, key, file=exercise.file, saved="" if saved is None else saved.name))
 
 
 def folder_here(language: Language | None) -> StudentFolder:

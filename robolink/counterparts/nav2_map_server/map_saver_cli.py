@@ -23,7 +23,7 @@ def main(args: list[str] | None = None) -> int:
         node = Node("map_saver")
         declare_saving(node)
         defaults = saving_of(node, words.f or f"map_{int(clocks.time_of_day())}")
-        wanted = Saving(
+        saving = Saving(
             defaults.path,
             words.fmt,
             words.mode,
@@ -32,7 +32,7 @@ def main(args: list[str] | None = None) -> int:
         )
         executor = robolink.get_global_executor()
         executor.add_node(node)
-        task = executor.create_task(save_topic(node, words.t, wanted))
+        task = executor.create_task(save_topic(node, words.t, saving))
         executor.spin_until_future_complete(task)
         return 0 if task.done() and task.result() else 1
 

@@ -47,14 +47,14 @@ class MapSaver(LifecycleNode):
     async def on_save_map(self, request: SaveMap.Request, response: SaveMap.Response) -> SaveMap.Response:
         """Wait for a map and save it."""
         defaults = saving_of(self, "")
-        wanted = Saving(
+        saving = Saving(
             str(path_of(request.map_url)),
             request.image_format,
             request.map_mode or defaults.mode,
             request.occupied_thresh or defaults.occupied,
             request.free_thresh or defaults.free,
         )
-        response.result = await save_topic(self, request.map_topic or "map", wanted)
+        response.result = await save_topic(self, request.map_topic or "map", saving)
         return response
 
 
@@ -74,18 +74,18 @@ def saving_of(node: Node, path: str) -> Saving:
     return Saving(path, occupied=occupied, free=free)
 
 
-async def save_topic(node: Node, topic: str, wanted: Saving) -> bool:
+async def save_topic(node: Node, topic: str, saving: Saving) -> bool:
     """Wait for the map of a topic and save it; return True if that went well, and log what went wrong.
 
     Args:
         node: Node that subscribes and has the parameters of `declare_saving`.
         topic: Topic of the map.
-        wanted: How it is saved.
+        saving: Files and format of the map.
     """
     logger = node.get_logger()
-    logger.info(f"Saving map from '{topic}' topic to '{wanted.path}' file")
+    logger.info(f"Saving map from '{topic}' topic to '{saving.path}' file")
     try:
-        how = checked(wanted)
+        how = checked(saving)
         grid = await _next_map(node, topic)
         if grid is None:
             logger.error(f"Failed to spin map subscription: nothing came on '{topic}' in time")

@@ -104,7 +104,7 @@ class DrawSquare(Node):
 
 
 def advanced(state: State, pose: Pose) -> State:
-    """Return what comes next: the turtle stops where a side or a turn ends, and once it stands the next one begins."""
+    """Return the next phase: the turtle stops where a side or a turn ends, and once it stands the next one begins."""
     phase, goal = state
     if phase is Phase.FORWARD:
         return State(Phase.STOP_FORWARD if is_reached(goal, pose) else phase, goal)

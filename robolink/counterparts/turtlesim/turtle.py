@@ -173,9 +173,9 @@ class Turtle:
         return turn
 
     def _stay_inside(self) -> Point | None:
-        wanted = (self.x, self.y)
+        free = (self.x, self.y)
         self.x, self.y = min(max(self.x, 0.0), SIZE), min(max(self.y, 0.0), SIZE)
-        return wanted if wanted != (self.x, self.y) else None
+        return free if free != (self.x, self.y) else None
 
     def _line(self, before: Point) -> Line | None:
         return None if self.pen.is_off else Line(before, (self.x, self.y), self.pen)
@@ -227,8 +227,8 @@ class Rotation:
         self._goal.abort()
         self._end()
 
-    def cancel_if_asked(self) -> None:
-        """Cancel the goal, and let the turtle stand, if a client has asked for that."""
+    def cancel_if_requested(self) -> None:
+        """Cancel the goal, and let the turtle stand, if a client has requested it."""
         if self._goal is not None and self._goal.is_cancel_requested:
             self._logger.info("Rotation goal canceled")
             self._goal.canceled()

@@ -84,7 +84,7 @@ class RunningTurtle:
     def update(self, canvas: Canvas) -> bool:
         """Move by one step, draw on the canvas, and publish; True if there is something new to see."""
         turtle, before = self.turtle, self.drawn
-        self._rotation.cancel_if_asked()
+        self._rotation.cancel_if_requested()
         step = turtle.step(self._now())
         canvas.draw(step.jumps)
         if step.turn is not None:

@@ -112,8 +112,8 @@ def robot_prefix(node: Node, name: str) -> str | None:
         node: Node that looks.
         name: Name of the robot; '' for the only one.
     """
-    found, wanted = node.get_topic_names_and_types(), type_name(JointState)
-    commands = [topic for topic, types in found if topic.endswith(f"/{COMMAND}") and wanted in types]
+    found, expected = node.get_topic_names_and_types(), type_name(JointState)
+    commands = [topic for topic, types in found if topic.endswith(f"/{COMMAND}") and expected in types]
     prefixes = [each.removesuffix(COMMAND) for each in commands if node.count_subscribers(each)]
     own = next((each for each in prefixes if name and each.endswith(f"/{spelled(name, 'robot')}/")), None)
     if own is not None or len(prefixes) != 1:
@@ -124,14 +124,14 @@ def robot_prefix(node: Node, name: str) -> str | None:
 
 def connect(node: WebotsDriver, executor: SingleThreadedExecutor) -> Robot | None:
     """Return the driver's robot once the world has it, and has made a step; None at the end of the context."""
-    began, is_told = node.get_clock().now().nanoseconds, False
+    began, is_logged = node.get_clock().now().nanoseconds, False
     while node.context.ok():
         robot = node.find_robot()
         if robot is not None:
             return robot if robot.step() == 0 else None
         executor.spin_once(timeout_sec=WAIT / 5)
-        if not is_told and node.get_clock().now().nanoseconds - began > ALONE * 1e9:
-            is_told = True
+        if not is_logged and node.get_clock().now().nanoseconds - began > ALONE * 1e9:
+            is_logged = True
             _warn(node)
     return None
 

@@ -63,12 +63,12 @@ class Relay:
 
     def look(self) -> None:
         """Begin to listen, or stop it, as there are listeners."""
-        is_wanted = self._always or self._publisher.get_subscription_count() > 0
-        if is_wanted and self._subscription is None:
+        is_needed = self._always or self._publisher.get_subscription_count() > 0
+        if is_needed and self._subscription is None:
             self._subscription = self._node.create_subscription(
                 self._stream.message, self._stream.source, self._pass_on, 10
             )
-        elif not is_wanted and self._subscription is not None:
+        elif not is_needed and self._subscription is not None:
             self._node.destroy_subscription(self._subscription)
             self._subscription = None
 

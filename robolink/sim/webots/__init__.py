@@ -46,7 +46,7 @@ def read(path: str | os.PathLike[str], text: str | None = None) -> WebotsWorld:
     """Read a world of Webots (or `text` in its place), with the PROTOs that lie beside it.
 
     Lengths, angles and heights are the file's; seen from above, x is east and y north. Raises `DocumentError` with
-    `file:line:column` for what is no VRML, impossible sizes, and robots that start inside something.
+    `file:line:column` for what is not VRML, impossible sizes, and robots that start inside something.
     """
     from robolink.sim.webots.convert import convert
     from robolink.sim.webots.protos import Protos

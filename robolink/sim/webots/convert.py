@@ -219,7 +219,7 @@ def _origin(path: str, things: list[Standing], robots: Sequence[Node]) -> Node |
 
 
 def _unknown(unknown: dict[str, int], missing: Mapping[str, str]) -> Iterator[str]:
-    """Yield what is not there: by the reason why, first what is simply not known."""
+    """Yield the nodes that are left out, by the reason why; first those that are not known."""
     reasons: dict[str, list[str]] = {}
     for name, count in sorted(unknown.items(), key=lambda each: (missing.get(each[0], ""), each[0])):
         reasons.setdefault(missing.get(name, ""), []).append(f"{name} ({count} times)" if count > 1 else name)

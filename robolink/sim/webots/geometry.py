@@ -1,4 +1,4 @@
-"""Solid geometry in space: placements of nodes, the parts that their shapes stand for, and footprints: outlines from above.
+"""Solid geometry in space: placements of nodes, the parts that their shapes stand for, and outlines from above."""
 
 from __future__ import annotations
 
@@ -186,7 +186,7 @@ def _from_line(points: Array, centre: Array, axis: Array) -> float:
 def part(geometry: Node, placement: Placement) -> Part | None:
     """Make the part that a geometry node stands for, or None where it has no extent.
 
-    Raises `KeyError` for a node that is no geometry known here, and `DocumentError` for impossible sizes.
+    Raises `KeyError` for a node that is not a geometry known here, and `DocumentError` for impossible sizes.
     """
     return _GEOMETRIES[geometry.type](geometry, placement)
 

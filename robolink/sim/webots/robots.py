@@ -226,9 +226,9 @@ def robot(
     pose = placement.pose
     pose = Pose(pose.x, pose.y, math.remainder(pose.theta + turn, math.tau))
     description, notes = _described(found, node, pieces, pose, dt, float(placement.offset[2]) - floor)
-    name, asked = unlike(description.name, taken), node.text("name", "robot")
-    if name != asked:
-        notes.insert(0, f"this is how the robot '{asked}' is called here")
+    name, given = unlike(description.name, taken), node.text("name", "robot")
+    if name != given:
+        notes.insert(0, f"this is how the robot '{given}' is called here")
     return Converted(msgspec.structs.replace(description, name=name), pieces.height, [f"{name}: {n}" for n in notes])
 
 

@@ -56,9 +56,9 @@ LIDARS = {
 """Lidars of Webots' library that scan in a plane, as their PROTOs define them."""
 
 
-def rate_near(wanted: float, dt: float) -> float:
-    """Return the rate in Hz nearest to the one wanted whose period is a whole number of steps of `dt` seconds."""
-    return 1.0 / (max(1, round(1.0 / (wanted * dt))) * dt)
+def rate_near(requested: float, dt: float) -> float:
+    """Return the rate in Hz nearest to the requested one whose period is a whole number of steps of `dt` seconds."""
+    return 1.0 / (max(1, round(1.0 / (requested * dt))) * dt)
 
 
 def sensors(

@@ -56,8 +56,8 @@ class Entry(NamedTuple):
 
 def text(op: str, **fields: Any) -> str:
     """Return a JSON operation; a field that is None is left out."""
-    kept = {name: value for name, value in fields.items() if value is not None}
-    return msgspec.json.encode({"op": op, **kept}).decode()
+    given = {name: value for name, value in fields.items() if value is not None}
+    return msgspec.json.encode({"op": op, **given}).decode()
 
 
 def status(level: int, message: str, id_: str | None = None) -> str:

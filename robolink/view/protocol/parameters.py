@@ -7,7 +7,7 @@ import binascii
 from typing import Any, NamedTuple
 
 from robolink.interfaces.rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from robolink.view.protocol.requests import ParameterWish, ProtocolError
+from robolink.view.protocol.requests import ParameterRequest, ProtocolError
 
 KINDS = ParameterType
 _FIELDS = {
@@ -75,67 +75,69 @@ def to_json(name: ParameterName, value: ParameterValue | None) -> dict[str, Any]
     return shown
 
 
-def from_json(wish: ParameterWish, known: int) -> Parameter:
+def from_json(request: ParameterRequest, known: int) -> Parameter:
     """Return the message that sets a parameter.
 
     Args:
-        wish: What a client asks for, in JSON; without a value the parameter is deleted.
+        request: Parameter that a client sets, in JSON; without a value the parameter is deleted.
         known: Type that the parameter has now: a whole number for a float is a float. 0 if it is not known.
 
     Raises:
         ProtocolError: for a value that no parameter can have.
     """
-    name = name_of(wish.name)
-    kind, value = _typed(wish, known)
+    name = name_of(request.name)
+    kind, value = _typed(request, known)
     made = ParameterValue(type=kind)
     if kind in _FIELDS:
         setattr(made, _FIELDS[kind], value)
     return Parameter(name=name.name, value=made)
 
 
-def _typed(wish: ParameterWish, known: int) -> tuple[int, Any]:
-    value = wish.value
+def _typed(request: ParameterRequest, known: int) -> tuple[int, Any]:
+    value = request.value
     if value is None:
         return KINDS.PARAMETER_NOT_SET, None
-    if wish.type == "byte_array" or (known == KINDS.PARAMETER_BYTE_ARRAY and isinstance(value, str)):
-        return KINDS.PARAMETER_BYTE_ARRAY, [bytes((each,)) for each in _decoded(wish)]
-    wants_float = wish.type in ("float64", "float64_array") or known in (
+    if request.type == "byte_array" or (known == KINDS.PARAMETER_BYTE_ARRAY and isinstance(value, str)):
+        return KINDS.PARAMETER_BYTE_ARRAY, [bytes((each,)) for each in _decoded(request)]
+    wants_float = request.type in ("float64", "float64_array") or known in (
         KINDS.PARAMETER_DOUBLE,
         KINDS.PARAMETER_DOUBLE_ARRAY,
     )
     if isinstance(value, list):
-        return _list(wish, known, wants_float)
+        return _list(request, known, wants_float)
     if type(value) not in _SCALARS:
-        raise ProtocolError(f"{wish.name}: {str(value)[:60]} is not a value of a parameter")
+        raise ProtocolError(f"{request.name}: {str(value)[:60]} is not a value of a parameter")
     if type(value) is int and wants_float:
         return KINDS.PARAMETER_DOUBLE, float(value)
-    return _SCALARS[type(value)], _in_range(wish, value)
+    return _SCALARS[type(value)], _in_range(request, value)
 
 
-def _list(wish: ParameterWish, known: int, wants_float: bool) -> tuple[int, list[Any]]:
-    kinds = {type(each) for each in wish.value}
+def _list(request: ParameterRequest, known: int, wants_float: bool) -> tuple[int, list[Any]]:
+    kinds = {type(each) for each in request.value}
     if not kinds and known in _FIELDS:
         return known, []
     if (kinds == {int} and wants_float) or kinds == {int, float}:
-        return KINDS.PARAMETER_DOUBLE_ARRAY, [float(each) for each in wish.value]
+        return KINDS.PARAMETER_DOUBLE_ARRAY, [float(each) for each in request.value]
     if len(kinds) > 1 or not kinds <= _ARRAYS.keys():
-        raise ProtocolError(f"{wish.name}: a list of parameters has values of one type, of bool, int, float or string")
+        raise ProtocolError(
+            f"{request.name}: a list of parameters has values of one type, of bool, int, float or string"
+        )
     kind = (
         _ARRAYS[kinds.pop()]
         if kinds
         else (KINDS.PARAMETER_DOUBLE_ARRAY if wants_float else KINDS.PARAMETER_STRING_ARRAY)
     )
-    return kind, [_in_range(wish, each) for each in wish.value]
+    return kind, [_in_range(request, each) for each in request.value]
 
 
-def _in_range(wish: ParameterWish, value: Any) -> Any:
+def _in_range(request: ParameterRequest, value: Any) -> Any:
     if type(value) is int and value not in _INT64:
-        raise ProtocolError(f"{wish.name}: {str(value)[:40]} is no integer of 64 bits")
+        raise ProtocolError(f"{request.name}: {str(value)[:40]} is not an integer of 64 bits")
     return value
 
 
-def _decoded(wish: ParameterWish) -> bytes:
+def _decoded(request: ParameterRequest) -> bytes:
     try:
-        return base64.b64decode(wish.value, validate=True)
+        return base64.b64decode(request.value, validate=True)
     except (binascii.Error, TypeError, ValueError):
-        raise ProtocolError(f"{wish.name}: expected the bytes in base64") from None
+        raise ProtocolError(f"{request.name}: expected the bytes in base64") from None

@@ -32,7 +32,7 @@ class _Op(msgspec.Struct, rename="camel", tag_field="op"):
     pass
 
 
-class SubscriptionWish(msgspec.Struct, rename="camel"):
+class SubscriptionRequest(msgspec.Struct, rename="camel"):
     """Subscription that a client asks for: its own number, the channel, and the rate in Hz (0: every message)."""
 
     id: U32
@@ -43,7 +43,7 @@ class SubscriptionWish(msgspec.Struct, rename="camel"):
 class Subscribe(_Op, tag="subscribe"):
     """Request to receive channels."""
 
-    subscriptions: Annotated[list[SubscriptionWish], msgspec.Meta(max_length=LONGEST_LIST)]
+    subscriptions: Annotated[list[SubscriptionRequest], msgspec.Meta(max_length=LONGEST_LIST)]
 
 
 class Unsubscribe(_Op, tag="unsubscribe"):
@@ -79,7 +79,7 @@ class Unadvertise(_Op, tag="unadvertise"):
     channel_ids: Annotated[list[U32], msgspec.Meta(max_length=LONGEST_LIST)]
 
 
-class ParameterWish(msgspec.Struct):
+class ParameterRequest(msgspec.Struct):
     """Parameter that a client sets; without a value it is deleted."""
 
     name: Name
@@ -97,7 +97,7 @@ class GetParameters(_Op, tag="getParameters"):
 class SetParameters(_Op, tag="setParameters"):
     """Request to change parameters."""
 
-    parameters: Annotated[list[ParameterWish], msgspec.Meta(max_length=LONGEST_LIST)]
+    parameters: Annotated[list[ParameterRequest], msgspec.Meta(max_length=LONGEST_LIST)]
     id: Name | None = None
 
 

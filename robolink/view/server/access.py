@@ -188,7 +188,7 @@ def find(path: str, folder: Path = PAGE) -> File | None:
 
 
 def _lean(file: Path) -> bytes:
-    """Return what a browser needs of a file: a script without its comments, each line where it was."""
+    """Return the bytes of a file that a browser needs: a script without its comments, each line where it was."""
     body = file.read_bytes()
     if file.suffix != ".js":
         return body

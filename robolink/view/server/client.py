@@ -128,10 +128,10 @@ class Client:
                 taken.add(channel)
                 self._begin(each, channel)
 
-    def _begin(self, wish: requests.SubscriptionWish, channel: Channel) -> None:
-        self._channels[wish.id] = channel
-        kept = self.hub.source.kept(channel)
-        take = self.outbox.want(wish.id, wish.rate, latched=channel.latched, kept=kept)
+    def _begin(self, request: requests.SubscriptionRequest, channel: Channel) -> None:
+        self._channels[request.id] = channel
+        retained = self.hub.source.retained(channel)
+        take = self.outbox.want(request.id, request.rate, latched=channel.latched, retained=retained)
         channel.takers = [*channel.takers, take]
         self.hub.source.listen(channel)
 
@@ -155,7 +155,7 @@ class Client:
     # What changes something
 
     def _publisher(self) -> Publishing:
-        """Return what this client publishes by; raises ProtocolError if it may not."""
+        """Return the publisher's side of this client. Raises ProtocolError if it may not publish."""
         self._check_trust("publishing")
         return _there(self._publishing, "publishing")
 

@@ -27,7 +27,7 @@ NOTHING = Picture({}, {}, {}, [])
 
 
 def picture_of(graph: Graph, own: str) -> Picture:
-    """Return what the graph looks like; what the node `own` subscribes to is left out, since that is what is viewed."""
+    """Return the ends and nodes of a graph; subscriptions of the node `own` are left out: it is the viewer."""
     ends: dict[EndpointKind, dict[Place, set[str]]] = {kind: {} for kind in EndpointKind}
     for each in graph.endpoints(*EndpointKind):
         if each.full_node_name != own or each.kind is EndpointKind.PUBLISHER:

@@ -117,7 +117,7 @@ class Hub:
 
     def leave_if_unused(self, channel: Channel) -> None:
         """Receive a channel no longer, if nobody wants it."""
-        if not channel.takers and not self.statistics.wanted:
+        if not channel.takers and not self.statistics.followed:
             self.source.leave(channel)
 
     async def run(self) -> None:

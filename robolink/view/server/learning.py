@@ -68,8 +68,8 @@ class Learning:
         """Do what a page asks for, one after the other; `say` sends it what it alone is told. Raises RobolinkError."""
         async with self._busy:
             do = self._exercises.obey
-            told = await asyncio.get_running_loop().run_in_executor(None, do, request.command, request.name)
-        for each in told:
+            replies = await asyncio.get_running_loop().run_in_executor(None, do, request.command, request.name)
+        for each in replies:
             say(text_of(each))
 
     def close(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Protocol
 
-from robolink.view.channels import LARGEST, Kept, Take
+from robolink.view.channels import LARGEST, Retained, Take
 from robolink.view.protocol.answers import ERROR, Entry, batch, head, message_frames
 from robolink.wire import gid_in
 
@@ -59,7 +59,7 @@ class Wire(Protocol):
         """Function that ends the connection at once."""
 
 
-class Wanted:
+class Subscribed:
     """Subscription of a client: its number, and its period in seconds (0: every message)."""
 
     __slots__ = ("due", "id", "keeps_all", "newest", "period", "take")
@@ -76,7 +76,7 @@ class Outbox:
     """Messages for one client.
 
     A client is slow while two batches are unacknowledged, or its connection's buffer is filled. Then only the newest
-    message of each publisher of each topic is kept, but MOST_LATCHED of latched topics, since each of those counts. The
+    message of each publisher of each topic is held, but MOST_LATCHED of latched topics, since each of those counts. The
     oldest give way where even that is more than MEMORY.
 
     Args:
@@ -87,8 +87,8 @@ class Outbox:
     def __init__(self, wire: Wire, *, batching: bool) -> None:
         self._wire, self._batching = wire, batching
         self._pending: list[Entry] = []
-        self._wanted: dict[int, Wanted] = {}
-        self._limited: dict[int, Wanted] = {}
+        self._subscriptions: dict[int, Subscribed] = {}
+        self._limited: dict[int, Subscribed] = {}
         self._all_of: set[int] = set()
         self._unacknowledged = 0
         self._thinned = 0
@@ -97,37 +97,37 @@ class Outbox:
         """Bytes of messages that wait for the period of their subscription."""
         self.sent = self.dropped = 0
 
-    def want(self, number: int, rate: float, *, latched: bool, kept: Iterable[Kept]) -> Take:
-        """Add a subscription, and return the function that takes its messages; `kept` go out first.
+    def want(self, number: int, rate: float, *, latched: bool, retained: Iterable[Retained]) -> Take:
+        """Add a subscription, and return the function that takes its messages; `retained` go out first.
 
         Args:
             number: Id of the subscription.
             rate: Highest rate in Hz, at which the newest message of each publisher is sent; 0 for every message.
             latched: True if every message counts, whatever the rate.
-            kept: Messages of before.
+            retained: Messages of before.
         """
-        wanted = Wanted(number, 1 / rate if rate and not latched else 0.0, latched)
-        wanted.take = self._limited_take(wanted) if wanted.period else self._plain_take(number)
-        self._wanted[number] = wanted
-        if wanted.period:
-            self._limited[number] = wanted
+        subscription = Subscribed(number, 1 / rate if rate and not latched else 0.0, latched)
+        subscription.take = self._limited_take(subscription) if subscription.period else self._plain_take(number)
+        self._subscriptions[number] = subscription
+        if subscription.period:
+            self._limited[number] = subscription
         if latched:
             self._all_of.add(number)
-        for each in kept:
-            wanted.take(*each)
-        return wanted.take
+        for each in retained:
+            subscription.take(*each)
+        return subscription.take
 
     def forget(self, number: int) -> Take | None:
         """Remove a subscription with what waits for it; returns its function, None if there is no such subscription."""
-        wanted = self._wanted.pop(number, None)
-        if wanted is None:
+        subscription = self._subscriptions.pop(number, None)
+        if subscription is None:
             return None
         if self._limited.pop(number, None) is not None:
-            self._held -= sum(len(entry.payload) for entry in wanted.newest.values())
+            self._held -= sum(len(entry.payload) for entry in subscription.newest.values())
         self._all_of.discard(number)
         self._pending[:] = [each for each in self._pending if each[0] != number]
         self._thinned = 0
-        return wanted.take
+        return subscription.take
 
     def clear(self) -> None:
         """Drop all that waits: the time of a bag has jumped, and it is of before."""
@@ -137,10 +137,10 @@ class Outbox:
         self._pending.clear()
 
     def __contains__(self, number: int) -> bool:
-        return number in self._wanted
+        return number in self._subscriptions
 
     def __len__(self) -> int:
-        return len(self._wanted)
+        return len(self._subscriptions)
 
     @property
     def waiting(self) -> int:
@@ -152,8 +152,8 @@ class Outbox:
         # A bare tuple: making an Entry of each message would cost as much as all the rest.
         return lambda at, payload, sender: append((number, at, payload, sender))  # type: ignore[arg-type]
 
-    def _limited_take(self, wanted: Wanted) -> Take:
-        newest, number = wanted.newest, wanted.id
+    def _limited_take(self, subscription: Subscribed) -> Take:
+        newest, number = subscription.newest, subscription.id
 
         def take(at: int, payload: bytes, sender: bytes) -> None:
             gid = gid_in(sender)
@@ -212,7 +212,7 @@ class Outbox:
             return
         seen: set[tuple[int, bytes]] = set()
         left = dict.fromkeys(self._all_of, MOST_LATCHED)
-        kept: list[Entry] = []
+        newest: list[Entry] = []
         size, before = 0, len(self._pending)
         for each in reversed(self._pending):
             number, _, payload, sender = each
@@ -227,8 +227,8 @@ class Outbox:
             size += len(payload)
             if size > MEMORY:
                 break
-            kept.append(each)
-        kept.reverse()
-        self._pending[:] = kept
-        self._thinned = len(kept)
-        self.dropped += before - len(kept)
+            newest.append(each)
+        newest.reverse()
+        self._pending[:] = newest
+        self._thinned = len(newest)
+        self.dropped += before - len(newest)

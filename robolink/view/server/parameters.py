@@ -19,7 +19,7 @@ from robolink.view.channels import Channel
 from robolink.view.protocol import answers
 from robolink.view.protocol.answers import ERROR, WARNING
 from robolink.view.protocol.parameters import ParameterName, from_json, name_of, to_json
-from robolink.view.protocol.requests import ParameterWish
+from robolink.view.protocol.requests import ParameterRequest
 from robolink.view.server.outbox import Listener
 from robolink.view.sources.live import LiveSource
 
@@ -53,12 +53,12 @@ class Parameters:
     def __init__(self, system: LiveSource) -> None:
         self._system = system
         self._cache: dict[str, _Values] = {}
-        self._asked: dict[str, asyncio.Task[None]] = {}
+        self._fetching: dict[str, asyncio.Task[None]] = {}
         self._silent: dict[str, float] = {}
         self._changes: Counter[str] = Counter()
         """Number of events of each node, by which a change while it is asked is noticed."""
         self._followers: dict[Listener, set[str] | None] = {}
-        self._told: dict[ParameterName, dict[str, Any]] = {}
+        self._reported: dict[ParameterName, dict[str, Any]] = {}
         """Values that followers know: an event that repeats a client's own request is sent to nobody."""
         self._setting: Counter[tuple[Listener, str]] = Counter()
         """Requests under way, by client and parameter; each is answered once, whenever the event comes."""
@@ -80,12 +80,12 @@ class Parameters:
         self._attach()
         now = asyncio.get_running_loop().time()
         nodes = {name.removesuffix(_MARK) for name in self._system.service_names() if name.endswith(_MARK)}
-        for node in [*self._cache, *self._asked, *self._silent]:
+        for node in [*self._cache, *self._fetching, *self._silent]:
             if node not in nodes:
                 self._forget(node)
-        for node in nodes - self._cache.keys() - self._asked.keys():
+        for node in nodes - self._cache.keys() - self._fetching.keys():
             if now - self._silent.get(node, -AGAIN_AFTER) >= AGAIN_AFTER:
-                self._asked[node] = asyncio.get_running_loop().create_task(self._fetch(node))
+                self._fetching[node] = asyncio.get_running_loop().create_task(self._fetch(node))
 
     def _attach(self) -> None:
         channel = self._system.channel_of(EVENTS)
@@ -98,9 +98,9 @@ class Parameters:
         self._cache.pop(node, None)
         self._silent.pop(node, None)
         self._changes.pop(node, None)
-        for name in [each for each in self._told if each.node == node]:
-            del self._told[name]
-        task = self._asked.pop(node, None)
+        for name in [each for each in self._reported if each.node == node]:
+            del self._reported[name]
+        task = self._fetching.pop(node, None)
         if task is not None:
             task.cancel()
 
@@ -115,8 +115,8 @@ class Parameters:
             self._cache[node] = values
             self._tell(ParameterName(node, name) for name in values)
         finally:
-            if self._asked.get(node) is asyncio.current_task():  # it may have come back, and be asked anew
-                del self._asked[node]
+            if self._fetching.get(node) is asyncio.current_task():  # it may have come back, and be asked anew
+                del self._fetching[node]
 
     async def _all_values(self, node: str) -> _Values:
         """Ask for all parameters of a node."""
@@ -155,7 +155,7 @@ class Parameters:
             event: Any = decode(ParameterEvent, payload)
         except RobolinkError:
             return
-        if event.node in self._cache or event.node in self._asked:
+        if event.node in self._cache or event.node in self._fetching:
             self._changes[event.node] += 1
         values = self._cache.get(event.node)
         if values is None:
@@ -169,8 +169,8 @@ class Parameters:
     def _tell(self, names: Iterable[ParameterName]) -> None:
         """Send the values that are new to the clients that follow them."""
         values = {name: to_json(name, self._cached(name)) for name in names}
-        changed = {str(name): value for name, value in values.items() if self._told.get(name) != value}
-        self._told.update(values)
+        changed = {str(name): value for name, value in values.items() if self._reported.get(name) != value}
+        self._reported.update(values)
         for client in self._followers:
             shown = self._followed(client, changed)
             if shown:
@@ -178,11 +178,11 @@ class Parameters:
 
     def _followed(self, client: Listener, values: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
         """Return those of the values that a client follows and is not setting now."""
-        wanted = self._followers.get(client, set())
+        followed = self._followers.get(client, set())
         return [
             value
             for name, value in values.items()
-            if (wanted is None or name in wanted) and not self._setting[client, name]
+            if (followed is None or name in followed) and not self._setting[client, name]
         ]
 
     def _cached(self, name: ParameterName) -> ParameterValue | None:
@@ -215,8 +215,8 @@ class Parameters:
         if names:
             shown = await self._named(client, names)
         else:
-            if self._asked:
-                await asyncio.wait(self._asked.values(), timeout=FIRST_WITHIN)
+            if self._fetching:
+                await asyncio.wait(self._fetching.values(), timeout=FIRST_WITHIN)
             shown = [to_json(ParameterName(node, name), self._cache[node][name]) for node, name in self._all()]
         client.say(answers.text("parameterValues", parameters=shown, id=id_))
 
@@ -254,33 +254,33 @@ class Parameters:
             return
         self._cache.setdefault(node, {}).update(values)
 
-    async def set(self, client: Listener, wishes: list[ParameterWish], id_: str | None) -> None:
+    async def set(self, client: Listener, requested: list[ParameterRequest], id_: str | None) -> None:
         """Set parameters, and tell the client what a node refuses and why; with an id it gets the values that are."""
         self._begin()
-        by_node: dict[str, list[ParameterWish]] = {}
-        for each in wishes:
+        by_node: dict[str, list[ParameterRequest]] = {}
+        for each in requested:
             by_node.setdefault(name_of(each.name).node, []).append(each)
         there = self._there(client, by_node)
-        under_way = [(client, each.name) for each in wishes]
+        under_way = [(client, each.name) for each in requested]
         self._setting.update(under_way)
         try:
             await asyncio.gather(*(self._set(client, node, by_node[node]) for node in there))
         finally:
             self._setting -= Counter(under_way)
-        shown = {each.name: to_json(name_of(each.name), self._cached(name_of(each.name))) for each in wishes}
+        shown = {each.name: to_json(name_of(each.name), self._cached(name_of(each.name))) for each in requested}
         if id_ is not None:
             client.say(answers.text("parameterValues", parameters=list(shown.values()), id=id_))
         elif followed := self._followed(client, shown):
             client.say(answers.text("parameterValues", parameters=followed))
 
-    async def _set(self, client: Listener, node: str, wishes: list[ParameterWish]) -> None:
-        names = [name_of(each.name).name for each in wishes]
+    async def _set(self, client: Listener, node: str, requested: list[ParameterRequest]) -> None:
+        names = [name_of(each.name).name for each in requested]
         await self._refresh(client, node, names)
         known = self._cache.get(node, {})
         try:
             given = [
                 from_json(each, known[name].type if name in known else 0)
-                for each, name in zip(wishes, names, strict=True)
+                for each, name in zip(requested, names, strict=True)
             ]
             answer = await self._ask(node, "set_parameters", SetParameters, SetParameters.Request(parameters=given))
         except RobolinkError as error:

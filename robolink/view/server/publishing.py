@@ -43,15 +43,15 @@ MOST_CALLS = 100
 class _Outgoing:
     """One channel of a client."""
 
-    def __init__(self, system: LiveSource, wish: ClientChannel) -> None:
-        self.cls = _class_of(system, wish.schema_name)
-        self.encoding, self.stop_after = wish.encoding, wish.stop_after
-        self.publisher = system.node.create_publisher(self.cls, wish.topic, 10)
+    def __init__(self, system: LiveSource, request: ClientChannel) -> None:
+        self.cls = _class_of(system, request.schema_name)
+        self.encoding, self.stop_after = request.encoding, request.stop_after
+        self.publisher = system.node.create_publisher(self.cls, request.topic, 10)
         self.drives = self.cls.__ros_type__ in DRIVEN
         self.moving: Any = None
         """Last message, if it moves something."""
         self.stops_at = 0.0
-        self._system, self._holds, self._told = system, wish.hold, False
+        self._system, self._holds, self._reported = system, request.hold, False
         if self._holds:
             system.held[self.publisher.topic] += 1
 
@@ -72,8 +72,8 @@ class _Outgoing:
     def _is_held(self) -> bool:
         """Return whether an emergency stop keeps this from moving anything; raises ProtocolError the first time."""
         is_held = self._system.held[self.publisher.topic] > 0
-        told, self._told = self._told, is_held
-        if is_held and not told:
+        reported, self._reported = self._reported, is_held
+        if is_held and not reported:
             self.stop()
             raise ProtocolError("an emergency stop of a page holds it at zero")
         return is_held
@@ -106,16 +106,16 @@ class Publishing:
         self._system = system
         self._channels: dict[int, _Outgoing] = {}
 
-    def advertise(self, wish: ClientChannel) -> None:
+    def advertise(self, request: ClientChannel) -> None:
         """Begin a channel. Raises RobolinkError with the reason if it cannot be."""
-        if wish.id in self._channels:
-            raise ProtocolError(f"advertise: channel {wish.id} is there already")
+        if request.id in self._channels:
+            raise ProtocolError(f"advertise: channel {request.id} is there already")
         if len(self._channels) >= MOST_CHANNELS:
             raise ProtocolError(f"advertise: more than {MOST_CHANNELS} channels of one client")
-        if wish.encoding not in ENCODINGS:
+        if request.encoding not in ENCODINGS:
             expected = " or ".join(ENCODINGS)
-            raise ProtocolError(f"advertise {wish.topic}: encoding {wish.encoding!r}; expected {expected}")
-        self._channels[wish.id] = _Outgoing(self._system, wish)
+            raise ProtocolError(f"advertise {request.topic}: encoding {request.encoding!r}; expected {expected}")
+        self._channels[request.id] = _Outgoing(self._system, request)
 
     def unadvertise(self, number: int) -> None:
         """End a channel; what it drives stops."""

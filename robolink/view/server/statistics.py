@@ -43,7 +43,7 @@ class Statistics:
         self._process = psutil.Process()
 
     @property
-    def wanted(self) -> bool:
+    def followed(self) -> bool:
         """True while a client wants them."""
         return bool(self._followers)
 

@@ -173,8 +173,8 @@ class View:
             await self._close(server)
 
     async def _listen(self) -> Server:
-        wanted = [self._port] if self._port is not None else range(PORT, PORT + MOST_PORTS)
-        for port in wanted:
+        ports = [self._port] if self._port is not None else range(PORT, PORT + MOST_PORTS)
+        for port in ports:
             try:
                 return await self._listen_at(port)
             except OSError as error:

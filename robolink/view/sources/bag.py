@@ -17,7 +17,7 @@ from robolink.bag.topic import BagMessage, BagTopic
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find_announced
 from robolink.system import clocks
-from robolink.view.channels import Audience, Channel, Kept, ServiceEntry
+from robolink.view.channels import Audience, Channel, Retained, ServiceEntry
 from robolink.view.protocol import answers
 from robolink.view.protocol.answers import ENDED, PAUSED, PLAYING, WARNING
 from robolink.view.protocol.requests import PlaybackControl
@@ -46,13 +46,13 @@ class Scenes(Playlist):
     def __init__(self, bag: Bag, left_out: Iterable[str]) -> None:
         super().__init__([bag], EVERYTHING._replace(exclude_topics=tuple(left_out)))
         self._bag = bag
-        self.wanted: set[str] = set()
+        self.requested: set[str] = set()
         """Names of the topics that somebody looks at."""
 
     def latched(self, before: int, names: Container[str] | None = None) -> list[BagMessage]:
-        """Return what latched topics have kept at a time, of others the last message; that of this very time counts."""
-        wanted = self.wanted if names is None else names
-        found = super().latched(before + 1, wanted) + self._last(before + 1, wanted)
+        """Return the messages that latched topics retain at a time, of others the last, that of this very time too."""
+        requested = self.requested if names is None else names
+        found = super().latched(before + 1, requested) + self._last(before + 1, requested)
         return sorted(found, key=lambda each: each.log_time)
 
     def _last(self, before: int, names: Container[str]) -> list[BagMessage]:
@@ -116,7 +116,7 @@ class BagSource:
 
     def listen(self, channel: Channel) -> None:
         """Begin to read a topic; the first one begins to play."""
-        self._scenes.wanted.add(channel.topic)
+        self._scenes.requested.add(channel.topic)
         if not self._begun:
             self._begun = True
             self._playback.resume()
@@ -124,13 +124,13 @@ class BagSource:
 
     def leave(self, channel: Channel) -> None:
         """Read it no longer."""
-        self._scenes.wanted.discard(channel.topic)
+        self._scenes.requested.discard(channel.topic)
 
-    def kept(self, channel: Channel) -> list[Kept]:
-        """Return what a late subscriber would have: the last message of a topic, of a latched one those it keeps."""
+    def retained(self, channel: Channel) -> list[Retained]:
+        """Return the messages of a late subscriber: the last one of a topic, of a latched one those that it retains."""
         if not self._begun:
             return []
-        return [_kept(channel, each) for each in self._scenes.latched(self._playback.time, {channel.topic})]
+        return [_retained(channel, each) for each in self._scenes.latched(self._playback.time, {channel.topic})]
 
     def sweep(self) -> None:
         """Play on, as far as time has gone on."""
@@ -158,8 +158,8 @@ class BagSource:
 
     def _deliver(self, message: BagMessage, at: int) -> None:
         channel = self._by_name.get(message.topic)
-        if channel is not None and message.topic in self._scenes.wanted:
-            channel.deliver(*_kept(channel, message))
+        if channel is not None and message.topic in self._scenes.requested:
+            channel.deliver(*_retained(channel, message))
 
     # Playback
 
@@ -195,7 +195,7 @@ class BagSource:
         return 0, 0
 
     def capabilities(self) -> list[str]:
-        """Return what can be done here, in Foxglove's words."""
+        """Return the server's capabilities, in Foxglove's words."""
         return ["playbackControl", "time"]
 
     def information(self) -> dict[str, Any]:
@@ -228,10 +228,10 @@ def _schema(topic: BagTopic) -> str | None:
         return None
 
 
-def _kept(channel: Channel, message: BagMessage) -> Kept:
+def _retained(channel: Channel, message: BagMessage) -> Retained:
     payload = bytes(message.data)
     sender = _tf_sender(payload) if channel.type_name == _TF else _NO_SENDER
-    return Kept(message.log_time, payload, sender)
+    return Retained(message.log_time, payload, sender)
 
 
 def _tf_sender(payload: bytes) -> bytes:

@@ -9,13 +9,13 @@ from robolink.graph.endpoint import ALL_BEST_EFFORT, ArrivalType, Owner, keys_of
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.transport.base import Handle
 from robolink.transport.history import latched_depth
-from robolink.view.channels import Channel, Kept
+from robolink.view.channels import Channel, Retained
 from robolink.wire import EndpointToken, gid_in
 
 LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-MOST_KEPT = 1000
-MOST_KEPT_BYTES = 64 * 2**20
+MOST_RETAINED = 1000
+MOST_RETAINED_BYTES = 64 * 2**20
 """Upper bounds of what is kept of one latched channel for late subscribers."""
 
 
@@ -40,8 +40,8 @@ class Listening:
         self._heard: set[str] = set()
         self._declared: list[Handle] = []
         self._depths: dict[bytes, int] = {}
-        self._kept: list[Kept] = []
-        self._kept_bytes = 0
+        self._retained: list[Retained] = []
+        self._retained_bytes = 0
 
     @property
     def reads(self) -> bool:
@@ -65,36 +65,38 @@ class Listening:
     def deliver(self, at: int, payload: bytes, attachment: bytes) -> None:
         """Hand a message on, and keep it if it is latched."""
         if self._latched:
-            self._keep(Kept(at, payload, attachment))
+            self._keep(Retained(at, payload, attachment))
         self.channel.deliver(at, payload, attachment)
 
-    def _keep(self, message: Kept) -> None:
+    def _keep(self, message: Retained) -> None:
         gid = gid_in(message.sender)
         depth = self._depths.get(gid)
         if depth is None:
             return
-        self._kept.append(message)
-        self._kept_bytes += len(message.payload)
+        self._retained.append(message)
+        self._retained_bytes += len(message.payload)
         own = (
-            [index for index, each in enumerate(self._kept) if gid_in(each.sender) == gid] if depth < MOST_KEPT else []
+            [index for index, each in enumerate(self._retained) if gid_in(each.sender) == gid]
+            if depth < MOST_RETAINED
+            else []
         )
         if own and len(own) > depth:
             self._drop(own[0])
-        while len(self._kept) > MOST_KEPT or self._kept_bytes > MOST_KEPT_BYTES:
+        while len(self._retained) > MOST_RETAINED or self._retained_bytes > MOST_RETAINED_BYTES:
             self._drop(0)
 
     def _drop(self, index: int) -> None:
-        self._kept_bytes -= len(self._kept.pop(index).payload)
+        self._retained_bytes -= len(self._retained.pop(index).payload)
 
     def forget(self, gid: bytes) -> None:
         """Keep nothing of a publisher that has gone, as its network does."""
         if self._depths.pop(gid, None) is not None:
-            self._kept = [each for each in self._kept if gid_in(each.sender) != gid]
-            self._kept_bytes = sum(len(each.payload) for each in self._kept)
+            self._retained = [each for each in self._retained if gid_in(each.sender) != gid]
+            self._retained_bytes = sum(len(each.payload) for each in self._retained)
 
-    def kept(self) -> list[Kept]:
-        """Return what late subscribers are to get, oldest first."""
-        return list(self._kept)
+    def retained(self) -> list[Retained]:
+        """Return the messages for late subscribers, oldest first."""
+        return list(self._retained)
 
     def close(self) -> None:
         """Listen no longer."""

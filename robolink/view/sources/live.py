@@ -21,7 +21,7 @@ from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
 from robolink.topic_or_service_is_hidden import topic_or_service_is_hidden
 from robolink.transport.base import Handle
-from robolink.view.channels import Audience, Channel, Kept, ServiceEntry
+from robolink.view.channels import Audience, Channel, Retained, ServiceEntry
 from robolink.view.protocol.answers import WARNING
 from robolink.view.sources.listening import Listening, latches
 from robolink.view.sources.types import PATIENCE, Types
@@ -143,12 +143,12 @@ class LiveSource:
         self._news: deque[tuple[bytes, EndpointToken, bool]] = deque()
         self._soon = False
         self._following: list[Handle] = []
-        self._told: set[str] = set()
+        self._announced: set[str] = set()
         self.caller = Caller(node)
         self.held: Counter[str] = Counter()
         """Topics on which no client may drive, with the number of emergency stops that say so."""
         self._clock_channel: Channel | None = None
-        self._clock = self._told_clock = 0
+        self._clock = self._shown_clock = 0
         self.followers: list[Callable[[], object]] = []
         """Functions that are called when the graph has changed."""
 
@@ -282,12 +282,12 @@ class LiveSource:
             self._take_back(id_)
 
     def _tell(self, id_: str, message: str) -> None:
-        self._told.add(id_)
+        self._announced.add(id_)
         self._audience.tell(WARNING, message, id_)
 
     def _take_back(self, id_: str) -> None:
-        if id_ in self._told:
-            self._told.discard(id_)
+        if id_ in self._announced:
+            self._announced.discard(id_)
             self._audience.take_back(id_)
 
     # What the parts of the server ask
@@ -366,10 +366,10 @@ class LiveSource:
         if listening is not None:
             listening.close()
 
-    def kept(self, channel: Channel) -> list[Kept]:
-        """Return what a late subscriber of a latched channel is to get."""
+    def retained(self, channel: Channel) -> list[Retained]:
+        """Return the messages that a late subscriber of a latched channel gets."""
         listening = self._listening.get(channel.id)
-        return [] if listening is None else listening.kept()
+        return [] if listening is None else listening.retained()
 
     def sweep(self) -> None:
         """Deliver all that has arrived."""
@@ -387,14 +387,14 @@ class LiveSource:
                     listening.channel.note(arrived.at, size(arrived.content))
             except RobolinkError:  # overwritten in shared memory, as that of a slow reader may be
                 self.unreadable += 1
-        if self._clock > 0 and self._clock != self._told_clock:
-            self._told_clock = self._clock
+        if self._clock > 0 and self._clock != self._shown_clock:
+            self._shown_clock = self._clock
             self._audience.time_is(self._clock)
 
     # What is offered
 
     def capabilities(self) -> list[str]:
-        """Return what can be done here, in Foxglove's words."""
+        """Return the server's capabilities, in Foxglove's words."""
         offered = ["clientPublish", "services", "parameters", "parametersSubscribe", "connectionGraph"]
         return [*offered, "time"] if self._clock_channel is not None else offered
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from robolink import Parameter
 from robolink.view.protocol.parameters import ParameterName, from_json, name_of, to_json
-from robolink.view.protocol.requests import ParameterWish, ProtocolError
+from robolink.view.protocol.requests import ParameterRequest, ProtocolError
 
 INTEGERS = st.integers(-(2**63), 2**63 - 1)
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)
@@ -38,14 +38,14 @@ def test_a_parameter_comes_back_as_it_was(value: Any) -> None:
     message = Parameter("gain.p", value=value).to_parameter_msg()
     shown = to_json(ParameterName("/ns/node", "gain.p"), message.value)
     assert shown["name"] == "/ns/node.gain.p"
-    wish = msgspec.json.decode(msgspec.json.encode(shown), type=ParameterWish)
+    wish = msgspec.json.decode(msgspec.json.encode(shown), type=ParameterRequest)
     assert from_json(wish, message.value.type) == message
 
 
 @given(ANY, st.none() | st.sampled_from(["byte_array", "float64", "float64_array", "x"]), st.integers(0, 9))
 def test_any_value_is_a_parameter_or_refused(value: Any, kind: str | None, known: int) -> None:
     try:
-        from_json(ParameterWish("/node.x", value, kind), known).value  # noqa: B018
+        from_json(ParameterRequest("/node.x", value, kind), known).value  # noqa: B018
     except ProtocolError as error:
         refusal = str(error)
     else:

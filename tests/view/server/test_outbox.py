@@ -77,7 +77,7 @@ def sender(name: str) -> bytes:
 def box(batching: bool = True, **more: Any) -> tuple[Wire, Outbox, Any]:
     wire = Wire()
     outbox = Outbox(wire, batching=batching)
-    return wire, outbox, outbox.want(1, more.get("rate", 0), latched=more.get("latched", False), kept=[])
+    return wire, outbox, outbox.want(1, more.get("rate", 0), latched=more.get("latched", False), retained=[])
 
 
 @pytest.mark.parametrize("batching", [True, False])
@@ -144,7 +144,7 @@ def test_a_client_that_stands_still_costs_no_more_than_stated(latched: bool) -> 
 
 def test_a_page_in_a_hidden_tab_costs_a_bounded_number_of_log_messages() -> None:
     wire, outbox, log = box(latched=True)
-    other = outbox.want(2, 0, latched=False, kept=[])
+    other = outbox.want(2, 0, latched=False, retained=[])
     wire.buffered = BUFFERED + 1
     for at in range(2 * MOST_LATCHED):
         log(at, b"x", sender("a"))
@@ -203,7 +203,7 @@ def test_what_waits_for_its_period_is_bounded_too() -> None:
 
 def test_after_a_jump_of_time_nothing_of_before_is_sent() -> None:
     wire, outbox, take = box(latched=True)
-    limited = outbox.want(2, 1.0, latched=False, kept=[])
+    limited = outbox.want(2, 1.0, latched=False, retained=[])
     for each in (take, limited):
         each(0, b"x", sender("a"))
     outbox.clear()

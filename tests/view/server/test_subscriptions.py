@@ -72,7 +72,7 @@ def test_late_subscribers_get_the_last_message_of_each_latched_publisher() -> No
             first.publish(String(data="newest"))
             assert deserialize_message(late.next(subscription), String).data == "newest"
             channel = next(each for each in system.source.channels.values() if each.topic == "/map")
-            until(lambda: len(system.source.kept(channel)) == 1)  # what has gone is forgotten
+            until(lambda: len(system.source.retained(channel)) == 1)  # what has gone is forgotten
         with system.client() as last:
             subscription = last.subscribe("/map")
             assert deserialize_message(last.next(subscription), String).data == "newest"

@@ -157,10 +157,10 @@ def test_static_transforms_of_a_bag_without_qos_are_latched(tmp_path: Path) -> N
         source.begin(watched)  # type: ignore[arg-type]
         assert [each.topic for each in source.channels.values() if each.latched] == ["/tf_static"]
         source.control(PlaybackControl(False, 1.0, START + 59 * SECOND, "me"))
-        assert [each.payload for each in source.kept(source.channels[1])] == [text("odom")]
-        assert source.kept(source.channels[2]) == []
+        assert [each.payload for each in source.retained(source.channels[1])] == [text("odom")]
+        assert source.retained(source.channels[2]) == []
         source.control(PlaybackControl(False, 1.0, START + 60 * SECOND, "me"))
-        assert [each.payload for each in source.kept(source.channels[2])] == [text("late")]
+        assert [each.payload for each in source.retained(source.channels[2])] == [text("late")]
 
 
 def test_a_topic_of_two_types_is_left_out_and_told(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import Any
 
-from robolink.learn.trial import Told, Trial
+from robolink.learn.trial import Reported, Trial
 from robolink.testing.expectations import ExpectationError, NodeFailure
 
 SET_BOOL = "std_srvs/srv/SetBool"
@@ -36,7 +36,7 @@ def called(trial: Trial, *, on: bool) -> Any:
         return trial.system.call(SetBool, "power", SetBool.Request(data=on), within=2.0)
     except NodeFailure as error:
         if "must return" in str(error.__cause__):
-            with contextlib.suppress(Told):
+            with contextlib.suppress(Reported):
                 trial.tell("answers", False, data=on)
         raise
     except ExpectationError:
