@@ -26,7 +26,7 @@ from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
 from robolink.running.execution import takes_arguments
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
-from robolink.text.callbacks import wanted
+from robolink.text.callbacks import signature_of
 from robolink.transport.base import Handle, Sample
 from robolink.transport.history import ALL, stored_depth
 from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
@@ -139,7 +139,7 @@ class Subscription(Receiver, Generic[MsgT]):
         self._callback_type = self.CallbackType.MessageOnly
         if not takes_arguments(callback, 1):
             if not takes_arguments(callback, 2):
-                how = wanted(callback, ("message",))
+                how = signature_of(callback, ("message",))
                 name, advice = (callback.__name__, f": {how}") if how else (str(callback), "")
                 raise RuntimeError(
                     f"{self.topic_name}: a callback takes the message, or the message and its MessageInfo;"

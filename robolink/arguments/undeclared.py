@@ -52,7 +52,7 @@ class GivenParameters:
         self._names: dict[str, str] = {}
         """Loggers of the nodes that were given files, by full name."""
         self._files: dict[int, Override] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
     def expect(self, node: OverriddenNode, overrides: Iterable[Override]) -> None:
         """Note what is given to a new node."""
@@ -93,8 +93,8 @@ class GivenParameters:
 
     def _warn_of_sections(self) -> None:
         for text in untaken(self._files.values(), self._names) if self._files else ():
-            if text not in self._told:
-                self._told.add(text)
+            if text not in self._reported:
+                self._reported.add(text)
                 get_logger(next(iter(self._names.values()))).warning(f"in a parameter file, {text}")
 
     def warn_of_rest(self) -> None:
@@ -114,13 +114,13 @@ def _warn(override: Override, logger: str, what: str) -> None:
 _NUMBER = re.compile(r"[0-9]+")
 
 MOST = 3
-"""Largest number of sections that are told of where nothing of all files is for any node."""
+"""Largest number of sections that are reported where nothing of all files is for any node."""
 
 
 def untaken(overrides: Iterable[Override], names: Collection[str]) -> Iterator[str]:
     """Yield a line for each section of files that is for no node, as "'batery' is not the name of a node ...".
 
-    A file may be for more nodes than are here, so a section is told of only if it is the one nearest to the name of a
+    A file may be for more nodes than are here, so a section is reported only if it is the one nearest to the name of a
     node that has none, or if nothing of all files is for any node.
 
     Args:
@@ -135,14 +135,14 @@ def untaken(overrides: Iterable[Override], names: Collection[str]) -> Iterator[s
     free = sorted(known - patterns.keys())
     meant = {_misspelt_for(name, lost): name for name in reversed(free)}
     has_taker = len(free) < len(known) or any(each.is_for(name) for each in patterns.values() for name in free)
-    told = [each for each in lost if each in meant or not has_taker]
-    most = len(told) if has_taker else MOST
-    for pattern in told[:most]:
+    reported = [each for each in lost if each in meant or not has_taker]
+    most = len(reported) if has_taker else MOST
+    for pattern in reported[:most]:
         name = meant.get(pattern)
         hint = f"did you mean '{name.lstrip('/')}'?" if name else _listed(names)
         yield f"'{shown(pattern.lstrip('/'))}' is not the name of a node that gets it ({hint})"
-    if told[most:]:
-        yield f"{len(told) - most} other sections are for no node that gets it, either"
+    if reported[most:]:
+        yield f"{len(reported) - most} other sections are for no node that gets it, either"
 
 
 def _misspelt_for(name: str, lost: Iterable[str]) -> str:

@@ -21,8 +21,8 @@ def draft_7(part: Any) -> Any:
         return [draft_7(each) for each in part]
     if not isinstance(part, dict):
         return part
-    told = {key: value for key, value in part.items() if key != "default" or _is_telling(value)}
-    made = {key: draft_7(value) for key, value in told.items()}
+    telling = {key: value for key, value in part.items() if key != "default" or _is_telling(value)}
+    made = {key: draft_7(value) for key, value in telling.items()}
     if isinstance(made.get("description"), str):
         made["description"] = inspect.cleandoc(made["description"]).partition("\n\nArgs:")[0]  # keys say their own
     if isinstance(made.get("anyOf"), list):  # the order is that of no version of msgspec

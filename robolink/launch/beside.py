@@ -1,4 +1,4 @@
-"""What runs beside the nodes of a launched system: recorder, view and file watch, and the keys that these need."""
+"""Companions of a launched system: recorder, view and file watch, and the keys that these need."""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ def launch(
         for line in (*notes, *beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
             supervisor.say(line)
         if server is not None:
-            server.is_asked_to_end = lambda: supervisor.is_asked_to_end
+            server.is_end_requested = lambda: supervisor.is_end_requested
         parts: list[contextlib.AbstractContextManager[object]] = [
             Control(supervisor, name=path.stem, file=str(path.resolve()), members=members, nodes=nodes, domain=domain)
         ]

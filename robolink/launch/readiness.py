@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import itertools
 import os
 import threading
 from collections import Counter
@@ -114,7 +115,8 @@ class Readiness:
     def __init__(self, held: Mapping[str, Sequence[Awaited]]) -> None:
         self._held = {name: all_of_one for name, all_of_one in held.items() if all_of_one}
         self._lock = threading.Lock()
-        self._wanted = {(each.kind, name) for all_of_one in held.values() for each in all_of_one for name in each.names}
+        conditions = itertools.chain.from_iterable(held.values())
+        self._awaited = {(each.kind, name) for each in conditions for name in each.names}
         self._there: Counter[tuple[str, str]] = Counter()
 
     @property
@@ -124,12 +126,12 @@ class Readiness:
 
     def knows(self, text: str) -> bool:
         """True if a process waits for what a token announces."""
-        return _key(text) in self._wanted
+        return _key(text) in self._awaited
 
     def note_token(self, text: str, alive: bool) -> list[str]:
         """Note a token that came or went; return the processes whose conditions are all met now, each once."""
         key = _key(text)
-        if key not in self._wanted:
+        if key not in self._awaited:
             return []
         with self._lock:
             self._there[key] += 1 if alive else -1

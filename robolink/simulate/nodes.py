@@ -39,8 +39,8 @@ def undeclared(given: Iterable[str], launched: Sequence[Launched], host: Host) -
             nodes = _nodes_of(full_name, launched, host)
             declared = {known for each in nodes for known in each._declared_so_far_}
             if nodes and not is_among(name, declared) and not any(map(_may_take_others, nodes)):
-                told = f"which has not declared it{nearest(name, sorted(declared))}"
-                yield f"parameter '{name}' was given to {full_name}, {told}"
+                reason = f"which has not declared it{nearest(name, sorted(declared))}"
+                yield f"parameter '{name}' was given to {full_name}, {reason}"
 
 
 def _nodes_of(full_name: str, launched: Sequence[Launched], host: Host) -> Collection[Node]:

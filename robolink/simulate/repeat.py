@@ -129,5 +129,5 @@ def _outcome(seed: int, code: int, out: bytes, err: bytes) -> SeedRun:
     try:
         return SeedRun(seed, msgspec.json.decode(lines[-1] if lines else b"", type=SimulationResult))
     except msgspec.DecodeError:
-        told = err.decode(errors="replace").strip().rpartition("\n")[2]
-        return SeedRun(seed, error=told or f"its process ended with exit code {code}")
+        message = err.decode(errors="replace").strip().rpartition("\n")[2]
+        return SeedRun(seed, error=message or f"its process ended with exit code {code}")

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from robolink.simulate.recording import SimulatedRecording
 
 PARTS = 200
-"""Number of parts of a run; after each its progress is told."""
+"""Number of parts of a run; after each its progress is reported."""
 
 SHORTEST_PART = 10**9
 """Length of such a part at least, in ns."""
@@ -89,12 +89,12 @@ def simulate(
         OSError: if the bag cannot be written.
     """
     seed = faults.seed if seed is None and faults is not None else seed
-    told = watching or Watching()
+    watch = watching or Watching()
     with ExitStack() as stack:
         stack.enter_context(numpy_seeded(seed or 0))
         launched = [replace(each, env={**_SAME_EVERYWHERE, **each.env}) for each in processes(entries)]
-        errors = stack.enter_context(_console(told.log))
-        run = _Run(launched, faults or FaultsDescription(), seed or 0, told, direct)
+        errors = stack.enter_context(_console(watch.log))
+        run = _Run(launched, faults or FaultsDescription(), seed or 0, watch, direct)
         run.given = given
         run.host.wishes = {} if seed is None else {"seed": seed}
         stack.callback(run.host.close)
@@ -149,13 +149,13 @@ class _Run:
         launched: Sequence[Launched],
         faults: FaultsDescription,
         seed: int,
-        told: Watching,
+        watch: Watching,
         direct: Direct | None,
     ) -> None:
-        self.trace, self.seed, self._told = Trace(), seed, told
+        self.trace, self.seed, self._watch = Trace(), seed, watch
         self.host = Host(seed=seed, connect=self._session, clock=self._clock)
         self.supervision = Supervision(
-            self.host, launched, say=told.say, direct=direct, on_added=self._add, env=_SAME_EVERYWHERE
+            self.host, launched, say=watch.say, direct=direct, on_added=self._add, env=_SAME_EVERYWHERE
         )
         self.injector = Injector(self.host.bus, self.host.time, self.supervision, seed=seed)
         self._launched: list[Launched] = []
@@ -238,7 +238,7 @@ class _Run:
             if self._recording is not None:
                 self._recording.add_scenery()
                 self._recording.write()
-            self._told.time(self.host.now)
+            self._watch.time(self.host.now)
 
     def _warnings(self, seconds: float, duration: float) -> list[str]:
         interrupted = [f"interrupted at {seconds:g} of {duration:g} s"] if self._interrupted else []

@@ -102,7 +102,7 @@ _WINDOWS_ENDS = {
 
 
 def is_orderly(returncode: int, step: Step, cause: str = "") -> bool:
-    """True if a process that had been asked to stop by `step` ended in an orderly way.
+    """True if a process that had been requested to stop by `step` ended in an orderly way.
 
     An uncaught KeyboardInterrupt is orderly too, and so is a Python that is interrupted before its program began: it
     may turn that into any error.
@@ -164,7 +164,7 @@ class Tracked:
     due: float | None = None
     """Time of its restart, or of the next step of stopping it; None if nothing is planned."""
     step: Step | None = None
-    """Last step by which it was asked to stop; None if it was not."""
+    """Last step by which it was requested to stop; None if it was not."""
     is_restart: bool = False
     """True if it is to be restarted once it has stopped."""
     streak: int = 0
@@ -172,7 +172,7 @@ class Tracked:
 
     @property
     def is_alive(self) -> bool:
-        """True while it runs, asked to stop or not."""
+        """True while it runs, requested to stop or not."""
         return self.state in ("running", "stopping")
 
     @property
@@ -185,20 +185,21 @@ class Policy:
     """State machine of a whole system: it ends on request, with its last process, or with one whose end counts.
 
     `ends` is the time at which the system ends by itself; it may still be set before `begin`. While it stops, processes
-    are asked by the next step every `patience` seconds. Call `begin` first; carry out the returned actions in order.
+    are requested to by the next step every `patience` seconds. Call `begin` first; carry out the returned actions in
+    order.
     """
 
     def __init__(self, rules: Mapping[str, Rules], *, ends: float | None = None, patience: float = 5.0) -> None:
         self.processes = {name: _tracked(name, each) for name, each in rules.items()}
         self.step: Step | None = None
-        """Last step by which the whole system was asked to stop; None if it was not."""
+        """Last step by which the whole system was requested to stop; None if it was not."""
         self.ends = ends
         self.expects_more = False
         """True while further processes may be added, so that the system goes on without any."""
         self._patience = patience
         self._code: int | None = None
         self._is_requested = False
-        self._asked = 0.0
+        self._requested_at = 0.0
 
     @property
     def alive(self) -> list[str]:
@@ -219,7 +220,7 @@ class Policy:
         if self.is_over:
             return None
         if self.step is not None:
-            return self._asked + self._patience
+            return self._requested_at + self._patience
         due = [each.due for each in self.processes.values() if each.due is not None]
         return min(due if self.ends is None else [*due, self.ends], default=None)
 
@@ -264,25 +265,25 @@ class Policy:
         each = self.processes[name]
         if not each.is_alive:
             return []
-        asked, is_restart, ran = each.step, each.is_restart, now - each.since
+        step, is_restart, ran = each.step, each.is_restart, now - each.since
         how = f"{name} {described(returncode)}{_why(each, returncode, cause, ran)}"
-        _move(each, "ended" if asked is None else "stopped", now)
+        _move(each, "ended" if step is None else "stopped", now)
         each.returncode, each.cause = returncode, cause
         if self.step is not None:
-            return self._ended_on_the_way(how, returncode, is_orderly(returncode, asked or Step.INTERRUPT, cause))
-        if asked is None:
+            return self._ended_on_the_way(how, returncode, is_orderly(returncode, step or Step.INTERRUPT, cause))
+        if step is None:
             return self._ended(each, how, ran, now)
-        told: list[Action] = [] if is_orderly(returncode, asked, cause) else [Say(how)]
+        report: list[Action] = [] if is_orderly(returncode, step, cause) else [Say(how)]
         if is_restart:
-            return [*told, *self._start(each, now)]
+            return [*report, *self._start(each, now)]
         if self.is_over:
-            self._code = exit_code(returncode) if told else 0
-        return [*(told or [Say(f"{name} has stopped")]), *self._only_held(now)]
+            self._code = exit_code(returncode) if report else 0
+        return [*(report or [Say(f"{name} has stopped")]), *self._only_held(now)]
 
     def interrupted(self, now: float, *, in_hurry: bool = True) -> list[Action]:
         """Handle a request to end the system; if it is stopping already, `in_hurry` goes on to the next step."""
         if self.step is not None:
-            is_echo = now - self._asked < _ECHO
+            is_echo = now - self._requested_at < _ECHO
             return self._harder(now) if in_hurry and not is_echo else []
         self._is_requested = True
         return [Say("stopping (Ctrl-C again to hurry)"), *self._harder(now)]
@@ -358,12 +359,14 @@ class Policy:
         return [Start(each.name)]
 
     def _ended(self, each: Tracked, how: str, ran: float, now: float) -> list[Action]:
-        """Handle the end of a process that was not asked to stop."""
+        """Handle the end of a process that was not requested to stop."""
         rule, code = each.rules.respawn, each.returncode or 0
         mark = ";" if ": " in how else ":"  # behind a cause or not
         if rule.wants(code):
-            kept = each.respawned if rule.most < NO_LIMIT else []  # one for each start, for ever, would fill the memory
-            each.respawned = [then for then in kept if now - then < rule.within]
+            recent = (
+                each.respawned if rule.most < NO_LIMIT else []
+            )  # all of them would fill the memory
+            each.respawned = [then for then in recent if now - then < rule.within]
             if len(each.respawned) < rule.most:
                 return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
             within = "" if rule.within == NO_LIMIT else f" within {rule.within:g} s"
@@ -389,37 +392,37 @@ class Policy:
         if len(vain) < len(left):
             return [Say(f"nothing runs any more; not started yet: {', '.join(each.name for each in left)}")]
         self._code = 1
-        told = "; ".join(f"{name} waits for {gone}, which has ended" for name, gone in vain.items())
-        return [Say(f"nothing runs any more, and {told}"), *self._harder(now)]
+        reason = "; ".join(f"{name} waits for {gone}, which has ended" for name, gone in vain.items())
+        return [Say(f"nothing runs any more, and {reason}"), *self._harder(now)]
 
     def _ended_for(self, held: Tracked) -> str:
         """Return the ended process for which a held one waits, directly or through others; '' for none."""
-        seen, asked = set[str](), [held.name]
-        while asked:
-            name = asked.pop(0)
+        seen, left = set[str](), [held.name]
+        while left:
+            name = left.pop(0)
             each = self.processes.get(name)
             if each is None or name in seen:
                 continue
             if each.state == "ended":
                 return name
             seen.add(name)
-            asked += sorted(each.rules.awaits) if each.state == "held" else []
+            left += sorted(each.rules.awaits) if each.state == "held" else []
         return ""
 
     def _harder(self, now: float) -> list[Action]:
         """Ask all that run to stop, but none by a step twice: that might disturb its orderly end."""
         self.step = Step.INTERRUPT if self.step is None else Step(min(self.step + 1, Step.GIVE_UP))
-        self._asked = now
+        self._requested_at = now
         if self.step is Step.GIVE_UP:
             self._code = self._code or exit_code(-9)
             return []
-        asked: list[Action] = []
+        requests: list[Action] = []
         for each in self.processes.values():
             if each.is_alive and (each.step is None or each.step < self.step):
                 _move(each, "stopping", now)
                 each.step = self.step
-                asked.append(Ask(each.name, self.step))
-        return asked
+                requests.append(Ask(each.name, self.step))
+        return requests
 
     def _one_harder(self, each: Tracked, now: float) -> list[Action]:
         if each.step is None:

@@ -84,13 +84,13 @@ class Supervisor:
         self._children: dict[str, Child] = {}
         self._events: queue.SimpleQueue[_Event] = queue.SimpleQueue()
         self._policy = Policy({each.name: each.rules for each in processes}, patience=patience)
-        self._lock = threading.Lock()  # held whenever the policy is asked
+        self._lock = threading.Lock()  # held whenever the policy is called
         self._director = None if director is None else director(self)
-        self._has_begun = self._is_end_told = self._is_running = False
+        self._has_begun = self._is_end_reported = self._is_running = False
         self._said_before: list[str] = []
         self.leavings: list[Path] = []
         """Files that the guardian removes if this process is killed; fill it before or while entering `beside`."""
-        self.is_asked_to_end = False
+        self.is_end_requested = False
         """True from the first signal or `stop` on, even while the loop is busy and has not taken it yet."""
 
     def run(self, duration: float | None = None, beside: Iterable[AbstractContextManager[object]] = ()) -> int:
@@ -100,7 +100,7 @@ class Supervisor:
 
         The code is that of the process whose end was the system's (128 + N when signal N killed it): the first that
         ends, but for those whose rules start them again or ignore their end; or the last of all. It is 0 when all
-        ended in order because the user (SIGINT, SIGTERM, SIGHUP) or the duration wanted it. Stopping goes by
+        ended in order because the user (SIGINT, SIGTERM, SIGHUP) or the duration requested it. Stopping goes by
         SIGINT, SIGTERM and SIGKILL to each process group, with `patience` seconds between; a second SIGINT
         goes straight to the next step. Raises `ProcessStartError`, after stopping what had been started.
         """
@@ -151,7 +151,7 @@ class Supervisor:
         self._put_about(name, lambda now: self._policy.released(name, now))
 
     def direct(self, act: Callable[[float], Sequence[Request[Process]]]) -> None:
-        """Call `act` with the time in the loop, where the director is asked, and carry out what it returns."""
+        """Call `act` with the time in the loop, where the director is called, and carry out what it returns."""
         self._events.put(lambda now: self._directed(act(now), now))
 
     def say(self, text: str) -> None:
@@ -199,8 +199,8 @@ class Supervisor:
         now = self._clock()
         with self._lock:
             self._policy.ends = None if duration is None else now + duration
-            asked = [] if self._director is None else self._directed(self._director.begin(now), now)
-            return [*self._policy.begin(now), *asked]
+            more = [] if self._director is None else self._directed(self._director.begin(now), now)
+            return [*self._policy.begin(now), *more]
 
     def _next_event(self) -> _Event:
         """Wait for the next event, which is a wake-up when the policy's deadline comes first."""
@@ -217,8 +217,8 @@ class Supervisor:
 
     def _woken(self, now: float) -> list[Action]:
         due = None if self._director is None else self._director.deadline
-        asked = [] if due is None or now < due else self._ask(lambda director: director.woken(now), now)
-        return [*self._policy.woken(now), *asked]
+        more = [] if due is None or now < due else self._ask(lambda director: director.woken(now), now)
+        return [*self._policy.woken(now), *more]
 
     # What the director decides
 
@@ -250,8 +250,8 @@ class Supervisor:
     def _tell_end(self) -> None:
         """Inform the director once that the system is ending."""
         is_ending = self._policy.step is not None or self._policy.is_over
-        if self._director is not None and is_ending and not self._is_end_told:
-            self._is_end_told = True
+        if self._director is not None and is_ending and not self._is_end_reported:
+            self._is_end_reported = True
             with self._lock:
                 now = self._clock()
                 actions = self._ask(lambda director: director.stopping(now), now)
@@ -259,7 +259,7 @@ class Supervisor:
             self._do(actions)
 
     def _do(self, actions: list[Action]) -> None:
-        asked = [each for each in actions if isinstance(each, Ask)]
+        requests = [each for each in actions if isinstance(each, Ask)]
         for action in actions:
             if isinstance(action, Start):
                 self._start(self._processes[action.name])
@@ -267,8 +267,8 @@ class Supervisor:
                 self._dispatcher.say(action.text)
             elif action.name in self._children:
                 self._children[action.name].ask(action.step)
-        if asked:
-            self._dispatcher.stopping(asked)
+        if requests:
+            self._dispatcher.stopping(requests)
 
     def _start(self, process: Process) -> None:
         name = process.name
@@ -309,7 +309,7 @@ class Supervisor:
         return actions
 
     def _interrupt(self, *, in_hurry: bool = False) -> None:
-        self.is_asked_to_end = True
+        self.is_end_requested = True
         self._events.put(partial(self._interrupted, in_hurry=in_hurry))
 
     def _interrupted(self, now: float, *, in_hurry: bool = False) -> list[Action]:
@@ -353,8 +353,8 @@ def _signals(interrupt: Callable[..., None], pause: Callable[[], None]) -> Itera
         else:
             interrupt(in_hurry=number in _HURRYING)
 
-    wanted = [*_HURRYING, *(each for each in (*_ENDING, *_PAUSING) if signal.getsignal(each) != signal.SIG_IGN)]
-    previous = {number: signal.signal(number, handle) for number in wanted}
+    handled = [*_HURRYING, *(each for each in (*_ENDING, *_PAUSING) if signal.getsignal(each) != signal.SIG_IGN)]
+    previous = {number: signal.signal(number, handle) for number in handled}
     try:
         yield
     finally:

@@ -19,9 +19,9 @@ def _finest_now() -> Callable[[], int]:
         ask.restype = None
 
         def precise_now() -> int:
-            told = ctypes.c_uint64()
-            ask(ctypes.byref(told))
-            return (told.value - _UNIX_BEGINS) * 100
+            found = ctypes.c_uint64()
+            ask(ctypes.byref(found))
+            return (found.value - _UNIX_BEGINS) * 100
 
         return precise_now
     return time.time_ns

@@ -16,7 +16,7 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
 _MOST_MAPPED = 32 << 20
 """Size in bytes from which an allocation is still mapped on its own: the largest that glibc accepts."""
 
-_MOST_KEPT = 64 << 20
+_MOST_RETAINED = 64 << 20
 """Free memory in bytes that an arena keeps at its top: what ten images of 6 MB in a queue leave behind."""
 
 HUGE = _MOST_MAPPED
@@ -25,7 +25,7 @@ HUGE = _MOST_MAPPED
 PAUSES = (1.0, 10.0)
 """Seconds without a huge message after which memory is given back, and again: one may have waited in a queue."""
 
-_kept = False
+_is_set = False
 _huge = threading.Event()
 """Set when a huge message has come."""
 _giver: threading.Thread | None = None
@@ -81,10 +81,10 @@ def keep(environ: Mapping[str, str] = os.environ) -> None:
     0.9 ms for each copy of 1 MB, 20 times the copy itself. Does nothing without glibc (musl, macOS, Windows), or where
     the user has set up the allocator in the environment.
     """
-    global _kept
-    if _kept:
+    global _is_set
+    if _is_set:
         return
-    _kept = True
+    _is_set = True
     if _has_glibc() and not _is_set_up(environ):
         # A Python without ctypes or dlopen is as slow as before: no reason to lose the message at hand.
         with contextlib.suppress(ImportError, AttributeError, OSError):
@@ -92,7 +92,7 @@ def keep(environ: Mapping[str, str] = os.environ) -> None:
 
             mallopt = ctypes.CDLL(None).mallopt
             mallopt(_MMAP_THRESHOLD, _MOST_MAPPED)
-            mallopt(_TRIM_THRESHOLD, _MOST_KEPT)
+            mallopt(_TRIM_THRESHOLD, _MOST_RETAINED)
 
 
 def _has_glibc() -> bool:

@@ -37,7 +37,7 @@ def named(function: Callable[..., Any]) -> str:
     return f"{function.__name__} ({place})" if place is not None else str(function)
 
 
-def wanted(function: Callable[..., Any], takes: tuple[str, ...]) -> str:
+def signature_of(function: Callable[..., Any], takes: tuple[str, ...]) -> str:
     """Return how a callback has to be defined and where it is: ``write `def on_timer(self):` (careful.py:10)``.
 
     Args:
@@ -78,7 +78,7 @@ def miscalled(error: BaseException) -> str:
     named = _MISCALLED.match(str(error))
     if found is None or named is None or named[1] != getattr(found[0], "__name__", ""):
         return ""
-    return wanted(*found)
+    return signature_of(*found)
 
 
 def place_of(error: BaseException) -> Place | None:

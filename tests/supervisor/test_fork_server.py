@@ -188,7 +188,7 @@ def test_a_server_that_does_not_answer_holds_up_no_end(script: Path, server: For
         assert first.line() == "ready"
         paused = server_of(server)
         signal_group(paused.pid, STOPPED)
-        server.is_asked_to_end = lambda: True
+        server.is_end_requested = lambda: True
         begun = time.monotonic()
         second = Started(asked(script, "wait", name="b"), lifeline, server)
         assert time.monotonic() - begun < fork_server.PATIENCE
@@ -201,12 +201,12 @@ def test_a_server_that_does_not_answer_holds_up_no_end(script: Path, server: For
 def test_a_launcher_tells_its_server_that_the_user_asks_for_the_end(
     script: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked_to_end: list[bool] = []
+    end_requested: list[bool] = []
 
     def fork(server: ForkServer, *args: object) -> None:
-        asked_to_end.append(server.is_asked_to_end())
+        end_requested.append(server.is_end_requested())
         signal.raise_signal(signal.SIGTERM)
-        asked_to_end.append(server.is_asked_to_end())
+        end_requested.append(server.is_end_requested())
 
     count = NODES_PER_CORE * (os.cpu_count() or 1)
     nodes = "".join(f"  - {{node: '{script}:main', name: n{i}, args: [wait]}}\n" for i in range(count))
@@ -214,7 +214,7 @@ def test_a_launcher_tells_its_server_that_the_user_asks_for_the_end(
     file.write_text(f"nodes:\n{nodes}")
     monkeypatch.setattr(ForkServer, "fork", fork)
     launch(read_launch_file(file, {}), file, on_event=lambda event: None)
-    assert asked_to_end[:2] == [False, True]
+    assert end_requested[:2] == [False, True]
 
 
 def test_a_process_that_is_not_let_go_ends(script: Path, server: ForkServer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,7 +29,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
             made.append((name, value))
             return 1
 
-    monkeypatch.setattr(heap, "_kept", False)
+    monkeypatch.setattr(heap, "_is_set", False)
     monkeypatch.setattr(ctypes, "CDLL", Libc)
     return made
 
@@ -83,12 +83,12 @@ def test_a_python_without_the_means_goes_on(monkeypatch: pytest.MonkeyPatch, mis
         return object()
 
     with_libc(monkeypatch, "glibc 2.36")
-    monkeypatch.setattr(heap, "_kept", False)
+    monkeypatch.setattr(heap, "_is_set", False)
     monkeypatch.setattr(ctypes, "CDLL", library)
     if missing == "ctypes":
         monkeypatch.setitem(sys.modules, "ctypes", None)
     heap.keep({})
-    assert heap._kept
+    assert heap._is_set
 
 
 def test_windows_is_left_alone(monkeypatch: pytest.MonkeyPatch, calls: list[tuple[int, int]]) -> None:

@@ -141,15 +141,15 @@ def launch(
     elif not given:
         ctx.fail("launch what? --list shows what there is")
     else:
-        asked = launch_file(ctx, given, options.workspace)
+        file = launch_file(ctx, given, options.workspace)
         if show_args:
-            _show_arguments(asked, json, options.workspace)
+            _show_arguments(file, json, options.workspace)
         elif validate:
-            raise typer.Exit(_validate(asked, options))
+            raise typer.Exit(_validate(file, options))
         elif graph:
-            _draw(asked, options, graph)
+            _draw(file, options, graph)
         else:
-            raise typer.Exit(_run(ctx, asked, options))
+            raise typer.Exit(_run(ctx, file, options))
 
 
 def _list(workspace: str | None) -> None:
@@ -187,18 +187,18 @@ def _prints_apart(is_apart: bool) -> AbstractContextManager[object]:
     return redirect_stdout(sys.stderr) if is_apart else nullcontext()
 
 
-def _show_arguments(asked: LaunchFile, as_json: bool, workspace: str | None) -> None:
+def _show_arguments(file: LaunchFile, as_json: bool, workspace: str | None) -> None:
     from robolink.launch.system import arguments_of
 
     with _prints_apart(as_json):
-        found = arguments_of(asked.path, workspace=workspace)
+        found = arguments_of(file.path, workspace=workspace)
     if as_json:
         import msgspec
 
         say(msgspec.json.encode(found).decode())
         return
     if not found:
-        say(f"{asked.path.stem} has no arguments")
+        say(f"{file.path.stem} has no arguments")
     rows = []
     for each in found:
         must = "must be given" if each.default is None else f"default: {each.default}"
@@ -209,13 +209,13 @@ def _show_arguments(asked: LaunchFile, as_json: bool, workspace: str | None) -> 
         say(line)
 
 
-def _validate(asked: LaunchFile, options: Options) -> int:
+def _validate(file: LaunchFile, options: Options) -> int:
     from robolink.documents.mistakes import first_mistakes
     from robolink.launch.looking.validate import Report, found, validate
     from robolink.launch.system import read_system_with_mistakes
 
     with _prints_apart(options.json):
-        system, mistakes = read_system_with_mistakes(asked.path, asked.given, workspace=options.workspace)
+        system, mistakes = read_system_with_mistakes(file.path, file.given, workspace=options.workspace)
     report = Report(mistakes, ["no node was looked into: that comes when its file is right"])
     if not mistakes:
         report = validate(system.entries)
@@ -223,25 +223,25 @@ def _validate(asked: LaunchFile, options: Options) -> int:
     if options.json:
         import msgspec
 
-        told = {"mistakes": [found(each) for each in report.mistakes], "notes": report.notes}
-        say(msgspec.json.encode(told).decode())
+        result = {"mistakes": [found(each) for each in report.mistakes], "notes": report.notes}
+        say(msgspec.json.encode(result).decode())
         return 1 if report.mistakes else 0
     for note in report.notes:
         tell(f"robolink: {note}")
     for mistake in report.mistakes:
         say(str(mistake))
     if not report.mistakes:
-        say(f"no mistake found in {asked.path}")
+        say(f"no mistake found in {file.path}")
     return 1 if report.mistakes else 0
 
 
-def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
+def _draw(file: LaunchFile, options: Options, format_: str) -> None:
     from robolink.launch.looking.graph import drawn
     from robolink.launch.looking.look import looks_of
     from robolink.launch.system import read_system
 
     with _prints_apart(True):
-        entries, notes, _ = read_system(asked.path, asked.given, workspace=options.workspace, foresee=True)
+        entries, notes, _ = read_system(file.path, file.given, workspace=options.workspace, foresee=True)
     for note in notes:
         tell(f"robolink: {note}")
     looks = looks_of(entries)
@@ -252,22 +252,22 @@ def _draw(asked: LaunchFile, options: Options, format_: str) -> None:
     say(drawn(entries, looks, format_).removesuffix("\n"))
 
 
-def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
+def _run(ctx: typer.Context, file: LaunchFile, options: Options) -> int:
     from robolink.launch.system import read_system, record_of
     from robolink.supervisor import watch_lifeline
 
     watch_lifeline()  # a launcher that another one launched ends with it
     with _prints_apart(options.json):
-        entries, notes, direct = read_system(asked.path, asked.given, workspace=options.workspace)
+        entries, notes, direct = read_system(file.path, file.given, workspace=options.workspace)
     if not entries and direct is None:
-        return _nothing(asked, notes)
+        return _nothing(file, notes)
     from robolink.launch.command import launch
 
-    record = record_of(asked.path, asked.given) if options.record is None else options.record
+    record = record_of(file.path, file.given) if options.record is None else options.record
     _join_network(entries)
     return launch(
         entries,
-        asked.path,
+        file.path,
         duration=options.duration,
         on_event=_event_printer() if options.json else None,
         watches=options.watch,
@@ -280,15 +280,15 @@ def _run(ctx: typer.Context, asked: LaunchFile, options: Options) -> int:
     )
 
 
-def _nothing(asked: LaunchFile, notes: Sequence[str]) -> int:
+def _nothing(file: LaunchFile, notes: Sequence[str]) -> int:
     """Report that a launch file starts nothing, which is a failure if something of it cannot run here."""
     from robolink.launch.lookup import is_of_ros
 
     for note in notes:
         tell(f"robolink: {note}")
     is_lacking = any("left out: " in note for note in notes)
-    why = "it starts nothing" if is_of_ros(asked.path) else "`if` and `unless` leave nothing to start"
-    tell(f"robolink: {asked.path}: {'nothing of it can be started' if is_lacking else why}")
+    why = "it starts nothing" if is_of_ros(file.path) else "`if` and `unless` leave nothing to start"
+    tell(f"robolink: {file.path}: {'nothing of it can be started' if is_lacking else why}")
     return 1 if is_lacking else 0
 
 

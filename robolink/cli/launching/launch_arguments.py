@@ -66,9 +66,9 @@ def launch_words(ctx: typer.Context, incomplete: str) -> list[str]:
     return []
 
 
-def show_launch_schema(asked: bool) -> None:
-    """Print the schema of launch files, if that is asked, and end."""
-    if asked:
+def show_launch_schema(is_requested: bool) -> None:
+    """Print the schema of launch files, if that is requested, and end."""
+    if is_requested:
         from robolink.documents.json_schema import text_of
         from robolink.launch.reading.description import launch_schema
 
@@ -76,9 +76,9 @@ def show_launch_schema(asked: bool) -> None:
         raise typer.Exit
 
 
-def show_faults_schema(asked: bool) -> None:
-    """Print the schema of faults files, if that is asked, and end."""
-    if asked:
+def show_faults_schema(is_requested: bool) -> None:
+    """Print the schema of faults files, if that is requested, and end."""
+    if is_requested:
         from robolink.documents.json_schema import text_of
         from robolink.faults.file import faults_schema
 

@@ -226,14 +226,14 @@ def _watching(progress: Progress, verbose: bool) -> Watching:
 
 
 def _repeat(ctx: typer.Context, options: Options, seeds: range, as_json: bool) -> int:
-    _read(ctx, options)  # what is wrong is told once
+    _read(ctx, options)  # what is wrong is reported once
     from robolink.running.threads import count_cores
     from robolink.simulate.repeat import run_seeds
 
     def done(run: SeedRun) -> None:
         progress.show(progress.shown + 1)
         if run.failures and not as_json:
-            say(_told(run, options))
+            say(_outcome(run, options))
 
     with Progress(len(seeds), "seeds") as progress:
         runs = run_seeds(lambda seed: [*_command(options, seed), "--json"], seeds, workers=count_cores(), on_done=done)
@@ -246,7 +246,7 @@ def _repeat(ctx: typer.Context, options: Options, seeds: range, as_json: bool) -
     return INTERRUPTED if interrupted else 1 if failed else 0
 
 
-def _told(run: SeedRun, options: Options) -> str:
+def _outcome(run: SeedRun, options: Options) -> str:
     import shlex
 
     return (

@@ -122,12 +122,12 @@ def read(text: bytes) -> Request:
 @contextlib.contextmanager
 def _child(request: Request) -> Iterator[subprocess.Popen[bytes]]:
     """Start the child process; its own children end with it."""
-    with tempfile.TemporaryFile() as asked:
-        asked.write(msgspec.json.encode(request))
-        asked.seek(0)
+    with tempfile.TemporaryFile() as request_file:
+        request_file.write(msgspec.json.encode(request))
+        request_file.seek(0)
         child = subprocess.Popen(
             [*own_command(), COMMAND],
-            stdin=asked,
+            stdin=request_file,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             **_APART,

@@ -232,10 +232,10 @@ def enclave_errors(entries: Iterable[Entry], looks: Mapping[str, Look]) -> Itera
     for each in entries:
         if each.source is None:
             continue
-        asked = _asked(each)
-        if asked not in known:
-            known[asked] = _security(dict(asked), each.node.enclave)
-        found = known[asked]
+        key = _security_key(each)
+        if key not in known:
+            known[key] = _security(dict(key), each.node.enclave)
+        found = known[key]
         if isinstance(found, str):
             yield each.error(["enclave"], f"'{each.name}' cannot be started: {found}")
         elif found is not None:
@@ -259,15 +259,15 @@ def enclave_notes(entries: Sequence[Entry]) -> Iterator[str]:
             return  # which is an error
 
 
-def _asked(entry: Entry) -> tuple[tuple[str, str], ...]:
-    """Return what decides about the security of a node: the variables, and the enclave that counts."""
+def _security_key(entry: Entry) -> tuple[tuple[str, str], ...]:
+    """Return the variables and the enclave that decide about the security of a node."""
     environ = environment_with(entry.node.env)
     chosen = {name: value for name, value in environ.items() if name.startswith("ROS_")}
     return tuple(sorted({**chosen, session.OVERRIDE: chosen.get(session.OVERRIDE) or entry.node.enclave}.items()))
 
 
 def _security(environ: Mapping[str, str], enclave: str) -> Security | str | None:
-    """Return the security of a node; why there is none; None where none is asked for."""
+    """Return the security of a node; why there is none; None where security is off."""
     try:
         return session.wanted(environ, domain_id(environ), enclave or None)
     except (RobolinkError, ValueError) as error:

@@ -90,7 +90,7 @@ def _listed(key: str, data: Any) -> Iterator[tuple[tuple[Step, ...], Any]]:
 
 
 def wrong_in_node(node: NodeDescription, data: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield what is wrong with the keys of a node or command, or contradicts each other.
+    """Yield the mistakes in the keys of a node or command, also those that contradict each other.
 
     Args:
         node: The node.
@@ -116,7 +116,7 @@ def wrong_in_node(node: NodeDescription, data: Mapping[str, Any]) -> Iterator[Pr
 
 
 def wrong_in_both(described: NodeDescription | GroupDescription, data: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield what is wrong with the keys that nodes and groups have; the arguments are those of `wrong_in_node`."""
+    """Yield the mistakes in the keys that nodes and groups have; the arguments are those of `wrong_in_node`."""
     if described.process:
         yield from _refused(_check_process_name, described.process, "process")
     if described.enclave:

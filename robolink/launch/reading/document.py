@@ -95,7 +95,7 @@ def _with_hint(error: DocumentError, text: str | None) -> DocumentError:
 
 
 def _hint(text: str, line: int) -> str:
-    """Return what is probably wrong in a line, counted from 1, at which YAML parsing failed; '' if unknown."""
+    """Return the probable mistake in a line, counted from 1, at which YAML parsing failed; '' if unknown."""
     near = [_QUOTED.sub("", each) for each in text.splitlines()[max(line - 2, 0) : line]]
     if near and (braces := _BRACES.search(near[-1])):
         return f"a value with {braces[0]} in it needs quotes here"

@@ -75,7 +75,7 @@ class Forked:
 
 
 class ForkServer:
-    """Supervisor's side: starts the server with the first process that is asked for.
+    """Supervisor's side: starts the server with the first process that is requested.
 
     Args:
         command: Command line whose processes it can become, such as `("python", "-m", "robolink")`; its own is this
@@ -90,7 +90,7 @@ class ForkServer:
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: socket.socket | None = None
         self._has_failed = sys.platform != "linux"
-        self.is_asked_to_end: Callable[[], bool] = lambda: False
+        self.is_end_requested: Callable[[], bool] = lambda: False
         """Set by the supervisor: returns True once the user asks for the end."""
 
     def can_become(self, argv: Sequence[str], env: Variables) -> bool:
@@ -156,7 +156,7 @@ class ForkServer:
         with selectors.DefaultSelector() as selector:
             selector.register(connection, selectors.EVENT_READ)
             while not selector.select(_SLICE):
-                patience = PATIENCE_AT_END if self.is_asked_to_end() else PATIENCE
+                patience = PATIENCE_AT_END if self.is_end_requested() else PATIENCE
                 if clocks.monotonic() - begun > patience:
                     raise ForkServerError("the server does not answer")
 
@@ -253,9 +253,9 @@ def _forked() -> int | None:
     if between:
         os.close(writing)
         os.waitpid(between, 0)
-        told = os.read(reading, _PID.size)
+        answer = os.read(reading, _PID.size)
         os.close(reading)
-        return int(_PID.unpack(told)[0]) if told else 0
+        return int(_PID.unpack(answer)[0]) if answer else 0
     try:
         if os.fork():
             os._exit(0)
@@ -269,7 +269,7 @@ def _forked() -> int | None:
 
 
 def _become(request: _Request, descriptors: Sequence[int], title: ProcessTitle) -> list[str]:
-    """Turn this new process into what was asked for, once the supervisor lets it go."""
+    """Turn this new process into the requested one, once the supervisor lets it go."""
     stdin, stdout, lifeline, go = descriptors
     if not os.read(go, 1):
         os._exit(0)
@@ -294,11 +294,11 @@ def _exactly(connection: socket.socket, size: int) -> bytes:
     return data
 
 
-def _adopt(wanted: bool) -> None:
+def _adopt(is_on: bool) -> None:
     """Become, or be no more, the process to which orphans among this one's descendants are given. Raises OSError."""
     import ctypes
 
-    if ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, ctypes.c_ulong(wanted), 0, 0, 0) != 0:
+    if ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, ctypes.c_ulong(is_on), 0, 0, 0) != 0:
         raise ForkServerError("no orphans can be adopted here")
 
 

@@ -189,8 +189,8 @@ def _stat(path: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    told = list(sys.stdin.buffer)
-    was_killed = told[-1:] != [_IN_ORDER]
+    lines = list(sys.stdin.buffer)
+    was_killed = lines[-1:] != [_IN_ORDER]
     if was_killed:
         remove(sys.argv[3:])
-    kill_after(remaining(told), float(sys.argv[1]), sys.argv[2] if was_killed else "")
+    kill_after(remaining(lines), float(sys.argv[1]), sys.argv[2] if was_killed else "")

@@ -211,9 +211,9 @@ def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
 
 
 @contextmanager
-def _interrupts_held(wanted: bool) -> Iterator[None]:
+def _interrupts_held(is_on: bool) -> Iterator[None]:
     """Block SIGINT while the block runs: a process that is started then inherits that; our own waits as long."""
-    if not wanted or sys.platform == "win32":
+    if not is_on or sys.platform == "win32":
         yield
         return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

@@ -68,9 +68,9 @@ class EventDispatcher:
         if returncode and not cause and found is not None:
             cause = found.text
         how = described(returncode)
-        told = f"{each.name} {how}" + (f": {cause}" if cause else "")
+        failure = f"{each.name} {how}" + (f": {cause}" if cause else "")
         if returncode if each.step is None else not is_orderly(returncode, each.step, cause):
-            self._summary.failed(each.name, told, restarts=each.restarts, was_asked=each.step is not None)
+            self._summary.failed(each.name, failure, restarts=each.restarts, was_requested=each.step is not None)
         self._note(f"{each.name}, pid {pid}, {how}")
         self._happened(lambda now: Exited(each.name, pid, returncode, how, cause, now))
         return cause
@@ -79,11 +79,11 @@ class EventDispatcher:
         """Report that a process will be restarted after `delay` seconds."""
         self._happened(lambda now: Restarting(name, round(delay, 6), now))
 
-    def stopping(self, asked: Sequence[Ask]) -> None:
-        """Report that processes were asked to stop, all by the same step."""
-        names = [each.name for each in asked]
-        self._note(f"{asked[0].step.name.lower()} {', '.join(names)}")
-        self._happened(lambda now: Stopping(names, asked[0].step.name.lower(), now))
+    def stopping(self, requests: Sequence[Ask]) -> None:
+        """Report that processes were requested to stop, all by the same step."""
+        names = [each.name for each in requests]
+        self._note(f"{requests[0].step.name.lower()} {', '.join(names)}")
+        self._happened(lambda now: Stopping(names, requests[0].step.name.lower(), now))
 
     def say(self, text: str) -> None:
         """Print a line to the user; never blocks."""
@@ -172,20 +172,20 @@ class Summary:
     def __init__(self) -> None:
         self._failures: dict[str, Failures] = {}
 
-    def failed(self, name: str, how: str, *, restarts: int, was_asked: bool) -> None:
-        """Note a failure: `world was killed by SIGSEGV`, also of a process that had been asked to stop."""
+    def failed(self, name: str, how: str, *, restarts: int, was_requested: bool) -> None:
+        """Note a failure: `world was killed by SIGSEGV`, also of a process that had been requested to stop."""
         failures = self._failures.setdefault(name, Failures(how))
-        failures.last = f"{how} (when asked to stop)" if was_asked else how
+        failures.last = f"{how} (when asked to stop)" if was_requested else how
         failures.times += 1
         failures.restarts = restarts
 
     def lines(self, still_running: Iterable[str] = ()) -> list[str]:
         """Return a line for each process that failed, in the order of their first failures."""
-        told = [_told(each) for each in self._failures.values()]
-        return told + [f"{name} still runs: it could not be killed" for name in still_running]
+        lines = [_line(each) for each in self._failures.values()]
+        return lines + [f"{name} still runs: it could not be killed" for name in still_running]
 
 
-def _told(failures: Failures) -> str:
+def _line(failures: Failures) -> str:
     if failures.times == 1 and failures.restarts == 0:
         return failures.last
     failed = f"failed {failures.times} times, " if failures.times > 1 else ""

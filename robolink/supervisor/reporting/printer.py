@@ -56,7 +56,7 @@ class Printer:
         self._queue.put_own(whole, len(whole))
 
     def close(self, timeout: float = 1.0) -> None:
-        """Print what waits, for at most `timeout` seconds."""
+        """Print the lines that wait, for at most `timeout` seconds."""
         self._queue.close(timeout)
 
 

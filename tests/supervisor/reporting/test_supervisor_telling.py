@@ -102,9 +102,9 @@ def test_what_this_python_prints_is_understood(code: str) -> None:
 def test_the_summary_counts_failures_and_tells_the_last_of_each() -> None:
     summary = Summary()
     assert summary.lines() == []
-    summary.failed("a", "a was killed by SIGSEGV", restarts=0, was_asked=False)
-    summary.failed("b", "b ended with exit code 1", restarts=0, was_asked=True)
-    summary.failed("a", "a ended with exit code 2", restarts=1, was_asked=False)
+    summary.failed("a", "a was killed by SIGSEGV", restarts=0, was_requested=False)
+    summary.failed("b", "b ended with exit code 1", restarts=0, was_requested=True)
+    summary.failed("a", "a ended with exit code 2", restarts=1, was_requested=False)
     assert summary.lines(["c"]) == [
         "a ended with exit code 2 (failed 2 times, started again once)",
         "b ended with exit code 1 (when asked to stop)",
