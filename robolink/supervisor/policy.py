@@ -363,9 +363,7 @@ class Policy:
         rule, code = each.rules.respawn, each.returncode or 0
         mark = ";" if ": " in how else ":"  # behind a cause or not
         if rule.wants(code):
-            recent = (
-                each.respawned if rule.most < NO_LIMIT else []
-            )  # all of them would fill the memory
+            recent = each.respawned if rule.most < NO_LIMIT else []  # all of them would fill the memory
             each.respawned = [then for then in recent if now - then < rule.within]
             if len(each.respawned) < rule.most:
                 return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
