@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
 from robolink.documents.yamlfile import parse, spell
-from robolink.race.maze import GOAL, SIZE, START, ClosedLine, Maze, Progress, make_maze
+from robolink.race.courses import GOAL, SIZE, START, ClosedLine, Maze, Progress, make_maze
 from robolink.workspace import built_in_workspace
 
 PENALTY = 5.0

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from robolink.grading.languages import MISTAKES, Language, Words, text_of
 from robolink.grading.mistakes import Mistake
-from robolink.race.maze import SIZE
+from robolink.race.courses import SIZE
 from robolink.race.races import Race
 from robolink.system.terminal import shown
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.race.maze import ClosedLine, Progress
+from robolink.race.courses import ClosedLine, Progress
 
 SQUARE = ClosedLine([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)])
 

@@ -17,7 +17,7 @@ EXCUSED = {
     "plot topic": "draws a picture, and names only topics and fields",
     "learn list": "shows texts of exercises",
     "learn start": "shows texts of robolink's own, and the path that it was given",
-    "learn check": "shows what a program prints by `say`, which escapes it: tests/learn/test_isolated.py",
+    "learn check": "shows what a program prints by `say`, which escapes it: tests/learn/test_check_apart.py",
     "learn watch": "is learn check, again and again",
     "learn view": "is learn watch, and prints an address of its own",
     "learn hint": "shows texts of exercises",

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.race.maze import GOAL, SIZE, START, Maze, make_maze
+from robolink.race.courses import GOAL, SIZE, START, Maze, make_maze
 from robolink.race.races import PENALTY, LapJudge, MazeJudge, WallJudge
 from tests.race.test_closed_line import SQUARE
 
