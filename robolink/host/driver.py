@@ -26,9 +26,8 @@ class HostDriver:
         self._executor, self._context = executor, executor.context
         self._queue, self._run = executor._queue_, executor.run
         self._queue.timekeeper = self
-        self._queue.schedule = self.schedule  # type: ignore[method-assign] # in place of a method that would only call it
         self._defaults, self._env = program.defaults, program.env
-        self.inbox.run = self.step  # type: ignore[method-assign] # in place of a method that would only call it
+        self.inbox.run = self.step
         self._scheduler = program.host.scheduler
         self._view, self._host_time, self._time = self._scheduler.view, self._scheduler.time, executor.context.time
         self._heap, self._next_serial = self._scheduler.heap, self._scheduler.serial.__next__

@@ -279,6 +279,8 @@ class HostedInbox(Inbox):
         self.queued = 0
         """Number of turns of this inbox that are due."""
         self.empty = _nothing_waits
+        self.run: Callable[[Runner], object] = _nothing_runs
+        """Function that runs one callback, in this thread: the step of the executor's driver, once it has one."""
         self._due = due
         self._place: HostedInbox | None = self
 
@@ -303,8 +305,9 @@ class HostedInbox(Inbox):
 
     clear = sweep
 
-    def run(self, runner: Runner) -> None:
-        """Run one callback of the executor, if the host runs them."""
+
+def _nothing_runs(runner: Runner) -> None:
+    """Run no callback: the executor is not the host's to run."""
 
 
 class ParkedInbox(HostedInbox):

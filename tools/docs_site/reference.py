@@ -32,9 +32,6 @@ API = (
 )
 """Modules whose public classes and functions are described."""
 
-PARTS = ("robolink.executors.executor",)
-"""Modules of the classes that are parts of one in `API`, whose methods are described as its own."""
-
 ABOUT = {
     "cli": ("Commands", "Every command and option. `robolink COMMAND --help` says the same."),
     "api": ("Python API", "What programs use most, from its docstrings. The modules have rclpy's names."),
@@ -166,20 +163,12 @@ def _class(name: str, kind: type) -> Iterator[str]:
 
 
 def methods(kind: type) -> list[tuple[str, Any]]:
-    """Return the public methods of a class by their names, with those of the parts that a user does not see apart."""
-    found = {name: member for each in reversed(_with_parts(kind)) for name, member in vars(each).items()}
+    """Return the public methods that a class defines itself, by their names."""
     return sorted(
         (name, each)
-        for name, each in found.items()
+        for name, each in vars(kind).items()
         if not name.startswith("_") and inspect.isfunction(each) and each.__doc__
     )
-
-
-def _with_parts(kind: type) -> list[type]:
-    """Return a class and those of its bases that are parts of it alone, in the order in which methods are looked up."""
-    whole = [each for each in kind.__mro__[1:] if each.__module__ in API]
-    parts = [each for each in kind.__mro__[1:] if each.__module__.startswith(PARTS)]
-    return [kind, *(part for part in parts if not any(issubclass(each, part) for each in whole))]
 
 
 def _function(name: str, function: Any, level: str) -> Iterator[str]:
