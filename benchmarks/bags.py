@@ -27,10 +27,9 @@ from rosbags.rosbag2 import Reader as RosbagsReader
 from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
-from robolink.bag.definition import message_definition
 from robolink.bag.mcap import Reader, Writer
 from robolink.bag.reader import open_bag
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import Image, LaserScan

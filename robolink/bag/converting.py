@@ -1,16 +1,20 @@
-"""Conversion of bags: one or several are written anew with other topics, files, compression or storage."""
+"""Conversion of bags into others, and the repair of those whose recorder was killed."""
 
 from __future__ import annotations
 
 import contextlib
+import sqlite3
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from robolink.bag.merging import merged_messages, merged_topics
-from robolink.bag.reader import Bag
+from robolink.bag import mcap
+from robolink.bag.folder import storage_files
+from robolink.bag.metadata import FILE_NAME, BagMetadata, read_metadata, write_metadata
+from robolink.bag.reader import Bag, merged_messages, merged_topics, open_bag
 from robolink.bag.selection import EVERYTHING, Selection
-from robolink.bag.topic import BagMessage, BagTopic
+from robolink.bag.storage.sqlite import SqliteReader, SqliteWriter
+from robolink.bag.topic import BagError, BagMessage, BagTopic
 from robolink.bag.writer import BagWriter
 
 TICK_EVERY = 64
@@ -115,3 +119,126 @@ class _Target:
         is_late = end is not None and message.log_time > end
         if number is not None and not (is_early or is_late):
             self.writer.write(number, message.log_time, message.publish_time, message.sequence, message.data)
+
+
+_END, _PART = 32 << 20, 64 << 10
+"""Bytes at the end of a file that are looked at for a hole, and the smallest hole that counts."""
+
+Told = Callable[[str], object]
+"""Function that is called with a line about what was done."""
+
+
+def reindex(path: str | Path, tell: Told = lambda line: None) -> BagMetadata:
+    """Mend a bag in its place, and return its metadata.
+
+    What metadata.yaml alone knows (custom data, the distribution, how the files are compressed) is kept if it can be
+    read. A file that cannot be read at all stays as it is, and is told.
+
+    Args:
+        path: Folder of the bag, or one storage file, which alone is then made whole.
+        tell: Called with each line about what was done.
+
+    Raises:
+        BagError: if there is no bag, or nothing of it can be read.
+        OSError: if it cannot be written.
+    """
+    folder = Path(path)
+    files = storage_files(folder) if folder.is_dir() else [folder]
+    if not files:
+        raise BagError(f"{folder} is not a bag: there is no .mcap and no .db3 file in it")
+    for each in files:
+        _mend(each, tell)
+    if not folder.is_dir():
+        with open_bag(folder) as bag:
+            return bag.metadata
+    metadata = _described(folder, tell)
+    write_metadata(folder, metadata)
+    return metadata
+
+
+def _described(folder: Path, tell: Told) -> BagMetadata:
+    """Return metadata of the files that are in a folder, whatever its metadata.yaml names."""
+    old = None
+    with contextlib.suppress(BagError):
+        old = read_metadata(folder) if (folder / FILE_NAME).exists() else None
+    with open_bag(folder, ignores_metadata=True) as bag:
+        for problem in bag.problems:
+            tell(problem)
+        metadata = bag.metadata
+    if old is not None:
+        metadata.custom_data = old.custom_data or metadata.custom_data
+        metadata.ros_distro = old.ros_distro or metadata.ros_distro
+        metadata.compression_mode = old.compression_mode or metadata.compression_mode
+        metadata.compression_format = old.compression_format or metadata.compression_format
+    return metadata
+
+
+def _mend(path: Path, tell: Told) -> None:
+    try:
+        with path.open("rb") as file:
+            head = file.read(16)
+    except OSError as error:
+        raise BagError(f"{path} cannot be read: {error.strerror}") from None
+    if head.startswith(b"\x89MCAP"):
+        _mend_mcap(path, tell)
+    elif head.startswith(b"SQLite format 3\0"):
+        _mend_sqlite(path, tell)
+
+
+def _mend_mcap(path: Path, tell: Told) -> None:
+    """Make an MCAP file whole, and give back the room that a killed recorder had reserved in it."""
+    try:
+        with mcap.open_mcap(path) as reader:
+            needs_it = not reader.is_whole or bool(reader.problems)
+        if not (needs_it or _has_hole(path)):
+            return
+        report = mcap.reindex(path)
+    except mcap.McapError as error:
+        tell(str(error))
+        return
+    for problem in report.problems:
+        tell(f"{path}: {problem}")
+    tell(f"{path}: {report.messages} messages, {report.size_before} bytes before and {report.size_after} now")
+
+
+def _has_hole(path: Path) -> bool:
+    """True if the end of a file has a part of zeros: room for what a recorder would have written."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - _END))
+        return any(not any(part) for part in iter(lambda: file.read(_PART), b""))
+
+
+def _mend_sqlite(path: Path, tell: Told) -> None:
+    """Let sqlite3 finish what the log of a killed writer holds, and make a damaged file whole from what can be read."""
+    if any(path.with_name(path.name + each).exists() for each in ("-wal", "-journal")):
+        with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(path)) as database:
+            database.execute("PRAGMA journal_mode = DELETE")
+    try:
+        reader = SqliteReader(path)
+    except BagError as error:
+        tell(str(error))
+        return
+    with contextlib.closing(reader):
+        reader.counts()  # reads all of it
+        if not reader.is_damaged:
+            return
+        partial = path.with_name(f".{path.name}.partial")
+        partial.unlink(missing_ok=True)
+        _copy(reader, partial)
+        for problem in reader.problems:
+            tell(problem)
+    kept = path.with_name(f"{path.name}.damaged")
+    path.replace(kept)
+    partial.replace(path)
+    tell(f"{path} is whole again; the damaged file is {kept.name}")
+
+
+def _copy(reader: SqliteReader, target: Path) -> None:
+    """Write what can be read of a file into another."""
+    writer = SqliteWriter(target)
+    try:
+        numbers = {each.name: writer.add_topic(each) for each in reader.topics}
+        for each in reader.messages(None, None, None):
+            writer.write(numbers[each.topic], each.log_time, each.publish_time, 0, each.data)
+    finally:
+        writer.close(reader.metadata)

@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-from robolink.bag.offered_qos import profiles_of_list, profiles_or_none, text_of
+from robolink.bag.qos import profiles_of_list, profiles_or_none, text_of
 from robolink.bag.topic import BagError, BagTopic
 from robolink.documents.foreign import unknown_key, warn
 from robolink.documents.yamlfile import read_text

@@ -1,4 +1,4 @@
-"""Reading of bags: one of rosbag2's or of robolink's, as a folder or as a single file."""
+"""Reading of bags: one in its files, and several merged by time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 import heapq
 import stat
 import tempfile
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
 
@@ -293,3 +293,54 @@ def _with_definition(topic: BagTopic, known: BagTopic | None) -> BagTopic:
         definition_encoding=known.definition_encoding,
         type_hash=topic.type_hash or known.type_hash,
     )
+
+
+def merged_topics(bags: Iterable[Bag], takes: Callable[[str, str], bool], advice: str) -> dict[str, BagTopic]:
+    """Return the topics of bags by name, each with all QoS profiles that were offered.
+
+    Args:
+        bags: The bags.
+        takes: Function of a topic's name and type that returns whether it counts.
+        advice: End of the error's text: what can be done about a topic of two types.
+
+    Raises:
+        BagError: if a name has two types: a message tells only its topic's name.
+    """
+    found: dict[str, BagTopic] = {}
+    for bag in bags:
+        for topic in bag.topics:
+            if not takes(topic.name, topic.type_name):
+                continue
+            known = found.setdefault(topic.name, topic)
+            if difference := topic.difference(known):
+                raise BagError(f"{bag.path}: {difference}: {advice}")
+            fresh = tuple(each for each in topic.offered_qos if each not in known.offered_qos)
+            found[topic.name] = known._replace(
+                offered_qos=known.offered_qos + fresh,
+                message_definition=known.message_definition or topic.message_definition,
+                type_hash=known.type_hash or topic.type_hash,
+            )
+    return found
+
+
+def merged_messages(
+    bags: Iterable[Bag],
+    names: Collection[str],
+    start: int | None = None,
+    end: int | None = None,
+    *,
+    reverse: bool = False,
+) -> Iterator[BagMessage]:
+    """Yield the messages of bags in the order of their log times.
+
+    Args:
+        bags: The bags.
+        names: Names of the topics.
+        start: Earliest log time, in nanoseconds since 1970.
+        end: Log time before which messages must be.
+        reverse: True for the latest first.
+    """
+    streams = [each.messages(names, start, end, reverse=reverse) for each in bags]
+    if len(streams) == 1:
+        return streams[0]
+    return heapq.merge(*streams, key=lambda message: message.log_time, reverse=reverse)

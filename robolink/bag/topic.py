@@ -1,12 +1,50 @@
-"""Topics and messages of a bag, and the error of everything that is wrong with one."""
+"""Topics of bags: as they are recorded, with their messages; texts of their types; and files that name topics.
+
+A file of static topics is as in rosbag2: a mapping with `static_topics_and_types_list`, a list of pairs of a topic and
+its type, to which a recorder listens from its start, whoever will publish them.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import os
+from typing import Any, NamedTuple
+
+import msgspec
 
 from robolink.bag.selection import SERVICE_EVENT
+from robolink.documents.foreign import warn_of_unknown_keys
+from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import RobolinkError
+from robolink.interfaces import find
+from robolink.message import Message
+from robolink.message.text import text_of
 from robolink.qos import QoSProfile
+from robolink.validate_full_topic_name import validate_full_topic_name
+
+SEPARATOR = "=" * 80
+"""Line before each type after the first."""
+
+
+def message_definition(cls: type[Message]) -> str:
+    """Return the text of a message class, and behind it that of each type in it, as the schema encoding ros2msg has it.
+
+    A part of a service or action (``SetBool.Request``, ``SetBool.Event``) is a message class too; a service itself is
+    none. The types come in the order in which they are first used, each once, behind a line ``MSG: pkg/Name``.
+    """
+    types: dict[str, type[Message]] = {cls.__ros_type__: cls}
+    waiting = [cls]
+    for each in waiting:
+        for kind in each.__ros_fields__.values():
+            if kind.message is not None and kind.message.__ros_type__ not in types:
+                types[kind.message.__ros_type__] = kind.message
+                waiting.append(kind.message)
+    first, *others = (_ended(text_of(each)) for each in types.values())
+    names = [name.replace("/msg/", "/") for name in types][1:]
+    return first + "".join(f"{SEPARATOR}\nMSG: {name}\n{text}" for name, text in zip(names, others, strict=True))
+
+
+def _ended(text: str) -> str:
+    return text if not text or text.endswith("\n") else text + "\n"
 
 
 class BagError(RobolinkError, ValueError, RuntimeError):
@@ -59,3 +97,38 @@ class BagMessage(NamedTuple):
     log_time: int
     publish_time: int
     sequence: int = 0
+
+
+KEY = "static_topics_and_types_list"
+
+
+class _StaticTopics(msgspec.Struct, frozen=True):
+    static_topics_and_types_list: list[tuple[str, str]]
+
+
+def read_static_topics(path: str | os.PathLike[str], *, text: str | None = None) -> dict[str, type[Any]]:
+    """Read a file of static topics, and return the message class of each.
+
+    Args:
+        path: The file.
+        text: Content to read in place of the file's.
+
+    Raises:
+        DocumentError: with `file:line:column`, for a topic that has no full name, and for a type that is not installed.
+        DocumentNotFoundError: if the file does not exist.
+    """
+    document = read(path, _StaticTopics, text=text)
+    warn_of_unknown_keys(document, document.data, [KEY])
+    pairs = document.value.static_topics_and_types_list
+    return {topic: _class_of(document, number, topic, kind) for number, (topic, kind) in enumerate(pairs)}
+
+
+def _class_of(document: Document[_StaticTopics], number: int, topic: str, kind: str) -> type[Any]:
+    try:
+        validate_full_topic_name(topic)
+    except RobolinkError:
+        raise document.error([KEY, number, 0], "expected a topic's full name, such as /scan") from None
+    try:
+        return find(kind)
+    except RobolinkError as error:
+        raise document.error([KEY, number, 1], str(error)) from None

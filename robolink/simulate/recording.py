@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robolink.bag.definition import message_definition
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.host.trace import ROSOUT, TRACEBACK

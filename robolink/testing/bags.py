@@ -15,8 +15,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robolink.bag.definition import message_definition
-from robolink.bag.topic import BagError, BagTopic
+from robolink.bag.topic import BagError, BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced

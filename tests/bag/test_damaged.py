@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.bag import reader as reading
+from robolink.bag.converting import reindex
 from robolink.bag.metadata import FILE_NAME
 from robolink.bag.reader import open_bag
-from robolink.bag.reindexing import reindex
 from robolink.bag.topic import BagError
 from tests.support.bags import Said, read, ten_messages, write, write_theirs
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from robolink.bag.definition import SEPARATOR, message_definition
+from robolink.bag.topic import SEPARATOR, message_definition
 from robolink.interfaces import find, names
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.geometry_msgs.msg import Twist

@@ -19,7 +19,7 @@ from robolink.bag.metadata import (
     spell_metadata,
     write_metadata,
 )
-from robolink.bag.offered_qos import profiles_of_text, profiles_or_none, text_of
+from robolink.bag.qos import profiles_of_text, profiles_or_none, text_of
 from robolink.bag.topic import BagError, BagTopic
 from robolink.duration import Duration, Infinite
 from robolink.exceptions import DocumentError

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.bag.qos_overrides import read_qos_overrides
+from robolink.bag.qos import read_qos_overrides
 from robolink.duration import Duration
 from robolink.exceptions import DocumentError
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from robolink.bag.converting import reindex
 from robolink.bag.metadata import read_metadata
 from robolink.bag.reader import open_bag
-from robolink.bag.reindexing import reindex
 from robolink.bag.topic import BagError
 from robolink.bag.writer import BagWriter
 from robolink.cli.main import main

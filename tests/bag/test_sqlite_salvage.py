@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from robolink.bag.converting import reindex
 from robolink.bag.reader import open_bag
-from robolink.bag.reindexing import reindex
 from robolink.bag.topic import BagError
 from robolink.cli.main import main
 from tests.support.bags import START, Said, read, read_by_rosbags, text, write

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robolink.bag.static_topics import read_static_topics
+from robolink.bag.topic import read_static_topics
 from robolink.exceptions import DocumentError
 from robolink.interfaces.std_msgs.msg import String
 

@@ -11,10 +11,9 @@ import pytest
 
 from robolink import Context, Node
 from robolink.bag.metadata import read_metadata
-from robolink.bag.output_options import read_outputs
-from robolink.bag.qos_overrides import read_qos_overrides
-from robolink.bag.static_topics import read_static_topics
-from robolink.bag.storage_options import chunk_compression
+from robolink.bag.output_options import chunk_compression, read_outputs
+from robolink.bag.qos import read_qos_overrides
+from robolink.bag.topic import read_static_topics
 from robolink.counterparts.urdf import read_urdf
 from robolink.documents.foreign import FileWarning, told_in_a_line, warnings_to
 from robolink.exceptions import DocumentError

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from robolink.bag.playing.offers import is_latched
+from robolink.bag.playing.publishers import is_latched
 from robolink.bag.reader import open_bag
 from robolink.bag.topic import BagError
 from robolink.bag.writer import BagWriter

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from robolink import Node
-from robolink.bag.definition import message_definition
 from robolink.bag.playing import Player, PlaySettings
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.interfaces.std_msgs.msg import String
 from robolink.message import encode, type_hash

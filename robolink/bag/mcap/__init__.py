@@ -8,7 +8,7 @@
 The format is that of https://mcap.dev/spec. What this room knows of ROS is one word: its profile.
 """
 
-from robolink.bag.mcap.compression import MissingCompressionError
+from robolink.bag.mcap.chunk import MissingCompressionError
 from robolink.bag.mcap.reader import Reader, open_mcap
 from robolink.bag.mcap.records import Attachment, Channel, McapError, Message, Schema, Statistics
 from robolink.bag.mcap.reindexing import Report, reindex

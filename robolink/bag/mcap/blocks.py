@@ -1,18 +1,22 @@
-"""Blocks of messages in a file that is read: its chunks, and runs of messages outside of any chunk."""
+"""Blocks of a file, which are chunks or runs of records: loading, ahead of time too, and messages in order."""
 
 from __future__ import annotations
 
+import bisect
 import contextlib
+import heapq
 import itertools
 import struct
 import threading
 import zlib
-from collections.abc import Container, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from operator import attrgetter
 from pathlib import Path
 from typing import NamedTuple
 
 from robolink.bag.limits import most_messages
-from robolink.bag.mcap.compression import unpack
+from robolink.bag.mcap.chunk import unpack
 from robolink.bag.mcap.records import (
     CHUNK,
     MESSAGE,
@@ -178,3 +182,76 @@ def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> li
             take(new(Message, (channel, sequence, log_time, publish_time, view[at + 31 : stop])))
         at = stop
     return found
+
+
+ALONE = 2
+"""Number of chunks that are loaded without a thread: most look-ups need no more."""
+LARGE = 1 << 20
+"""Size from which on a chunk is loaded ahead, in bytes; compressed ones always are, since unpacking takes longer."""
+
+Load = Callable[[Block], Buffer | None]
+
+
+def loaded(blocks: Sequence[Block], load: Load) -> Iterator[Buffer | None]:
+    """Iterate over what `load` returns for each block, in their order; a thread may call it."""
+    yield from map(load, blocks[:ALONE])
+    if any(_is_slow(each) for each in blocks[ALONE:]):
+        with ThreadPoolExecutor(1, "bag-ahead") as pool:
+            yield from _ahead(blocks[ALONE:], load, pool)
+    else:
+        yield from map(load, blocks[ALONE:])
+
+
+def _ahead(blocks: Sequence[Block], load: Load, pool: ThreadPoolExecutor) -> Iterator[Buffer | None]:
+    coming: Future[Buffer | None] = pool.submit(load, blocks[0])
+    for following in blocks[1:]:
+        found = coming.result()
+        coming = pool.submit(load, following)
+        yield found
+    yield coming.result()
+
+
+def _is_slow(block: Block) -> bool:
+    return bool(block.compression) or block.size >= LARGE
+
+
+_log_time = attrgetter("log_time")
+
+
+def _backwards(message: Message) -> int:
+    return -message.log_time
+
+
+def in_log_order(chunks: Iterable[tuple[list[Message], int | None]], *, reverse: bool = False) -> Iterator[Message]:
+    """Iterate over the messages of chunks in the order of their log times; of one time, the earlier chunk's come first.
+
+    Args:
+        chunks: Messages of each chunk, and the first log time of the chunks that follow (the last one with `reverse`);
+            None behind the last chunk. The chunks come in the order of their own.
+        reverse: True for the latest message first.
+    """
+    key: Callable[[Message], int] = _backwards if reverse else _log_time
+    waiting: list[tuple[int, int, int, list[Message]]] = []
+    """Chunks that are begun: key of their next message, number of the chunk, place of the message."""
+    for number, (chunk, following) in enumerate(chunks):
+        messages = sorted(reversed(chunk) if reverse else chunk, key=key)
+        if messages:
+            heapq.heappush(waiting, (key(messages[0]), number, 0, messages))
+        bound = None if following is None else -following if reverse else following
+        while waiting and (bound is None or waiting[0][0] <= bound):  # those of one time are not held together
+            yield from _next_run(waiting, bound, key)
+
+
+def _next_run(
+    waiting: list[tuple[int, int, int, list[Message]]], bound: int | None, key: Callable[[Message], int]
+) -> list[Message]:
+    """Take the messages of the chunk that comes next, up to the bound or to the next message of another chunk."""
+    _, number, at, messages = heapq.heappop(waiting)
+    end = len(messages) if bound is None else bisect.bisect_right(messages, bound, at, key=key)
+    if waiting:
+        time, other = waiting[0][:2]
+        find = bisect.bisect_right if number < other else bisect.bisect_left
+        end = find(messages, time, at, end, key=key)
+    if end < len(messages):
+        heapq.heappush(waiting, (key(messages[end]), number, end, messages))
+    return messages[at:end]

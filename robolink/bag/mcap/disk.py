@@ -1,15 +1,17 @@
-"""File on a disk as the writer needs it: bytes put at a place, data forced to the medium, an end that is cut off."""
+"""The file on disk, and a thread that has the system save it."""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
-from collections.abc import Iterable
+import threading
+from collections.abc import Callable, Iterable
 from io import FileIO
 from pathlib import Path
 
 from robolink.bag.mcap.records import Buffer
+from robolink.system import waits
 from robolink.system.files import put_in_place
 
 NEW = ".new"
@@ -142,3 +144,43 @@ else:
 
     def make_sparse(file: FileIO) -> None:
         """Let holes take no room on the disk: they do by themselves here."""
+
+
+class BackgroundSave:
+    """Runs of a function on a thread, one at a time.
+
+    Args:
+        save: Function that forces the file to the disk; it raises OSError.
+    """
+
+    def __init__(self, save: Callable[[], None]) -> None:
+        self._save = save
+        self._thread: threading.Thread | None = None
+        self._error: OSError | None = None
+
+    def is_free(self) -> bool:
+        """True if no run goes on. Raises the OSError of the one before, if that failed."""
+        if self._thread is not None and self._thread.is_alive():
+            return False
+        self.wait()
+        return True
+
+    def start(self) -> None:
+        """Start a run. There must be none."""
+        self._thread = threading.Thread(target=self._run, name="bag-save", daemon=True)
+        self._thread.start()
+
+    def wait(self) -> None:
+        """Wait for the run that goes on. Raises its OSError if it failed."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            waits.join(thread)
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    def _run(self) -> None:
+        try:
+            self._save()
+        except OSError as error:
+            self._error = error

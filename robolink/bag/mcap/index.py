@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from robolink.bag.limits import PIECE_RATIO, most_of_file
 from robolink.bag.mcap.blocks import Block, Catalog, Source, load
-from robolink.bag.mcap.compression import MissingCompressionError
+from robolink.bag.mcap.chunk import MissingCompressionError
 from robolink.bag.mcap.records import (
     ATTACHMENT,
     ATTACHMENT_INDEX,

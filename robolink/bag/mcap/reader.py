@@ -6,11 +6,9 @@ from collections.abc import Collection, Iterator
 from operator import attrgetter
 from pathlib import Path
 
-from robolink.bag.mcap.ahead import loaded
-from robolink.bag.mcap.blocks import Block, Catalog, Source, load, messages_of
-from robolink.bag.mcap.compression import MissingCompressionError
+from robolink.bag.mcap.blocks import Block, Catalog, Source, in_log_order, load, loaded, messages_of
+from robolink.bag.mcap.chunk import MissingCompressionError
 from robolink.bag.mcap.index import read_index
-from robolink.bag.mcap.ordering import in_log_order
 from robolink.bag.mcap.records import (
     MAGIC,
     Attachment,

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from robolink.bag.mcap.chunk import chunk_data
-from robolink.bag.mcap.compression import compressor
+from robolink.bag.mcap.chunk import chunk_data, compressor
 from robolink.bag.mcap.contents import Contents, Packed
-from robolink.bag.mcap.disk import DiskFile
+from robolink.bag.mcap.disk import BackgroundSave, DiskFile
 from robolink.bag.mcap.records import (
     MAGIC,
     MESSAGE,
@@ -25,7 +24,6 @@ from robolink.bag.mcap.records import (
     Statistics,
     header_record,
 )
-from robolink.bag.mcap.saving import BackgroundSave
 from robolink.bag.mcap.tail import ROOM, Create, Tail
 from robolink.system import clocks
 

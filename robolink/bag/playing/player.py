@@ -7,10 +7,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from robolink.bag.playing.pacing import pacer
-from robolink.bag.playing.playback import Playback
-from robolink.bag.playing.playlist import Playlist
-from robolink.bag.playing.publishers import Publishers
-from robolink.bag.playing.requests import Requests
+from robolink.bag.playing.playback import Playback, Playlist
+from robolink.bag.playing.publishers import Publishers, Requests
 from robolink.bag.playing.settings import PlaySettings
 from robolink.bag.reader import open_bag
 from robolink.bag.topic import BagMessage

@@ -9,13 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.bag.reader import open_bag
-from robolink.bag.recording.cache import Cache
-from robolink.bag.recording.collector import Collector, SimClock, Switch
-from robolink.bag.recording.definitions import Definitions
-from robolink.bag.recording.listener import Listener
-from robolink.bag.recording.settings import RecordSettings
-from robolink.bag.recording.topics import Arrived, RecordedTopic
-from robolink.bag.recording.writing import WritableBag, Writing
+from robolink.bag.recording.listener import Collector, Listener, SimClock, Switch
+from robolink.bag.recording.topics import Arrived, Definitions, RecordedTopic, RecordSettings
+from robolink.bag.recording.writing import Cache, WritableBag, Writing
 from robolink.bag.selection import Selection
 from robolink.bag.writer import BagWriter
 from robolink.exceptions import RobolinkError

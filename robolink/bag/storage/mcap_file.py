@@ -8,7 +8,7 @@ from pathlib import Path
 
 from robolink.bag.mcap import McapError, Reader, Writer, open_mcap
 from robolink.bag.metadata import BagMetadata, parse_metadata, spell_metadata
-from robolink.bag.offered_qos import profiles_or_none, text_of
+from robolink.bag.qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
 from robolink.bag.topic import BagError, BagMessage, BagTopic
 

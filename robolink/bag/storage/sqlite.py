@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from robolink.bag.metadata import BagMetadata, parse_metadata, spell_metadata
-from robolink.bag.offered_qos import profiles_or_none, text_of
+from robolink.bag.qos import profiles_or_none, text_of
 from robolink.bag.storage.base import StorageReader, StorageWriter, Written
 from robolink.bag.storage.sqlite_salvage import Salvage, allow_cut, lost_end
 from robolink.bag.topic import BagError, BagMessage, BagTopic

@@ -88,7 +88,7 @@ app.command("convert", cls=ListedOptions)(convert_bags)
 @app.command("reindex")
 def reindex_bag(bag: BagPath, storage: Storage = "") -> None:
     """Reconstruct the metadata of a bag, and repair files that were not closed."""
-    from robolink.bag.reindexing import reindex
+    from robolink.bag.converting import reindex
 
     say(f"Beginning reindexing bag in directory: {bag}" if bag.is_dir() else f"Beginning reindexing bag: {bag}")
     reindex(bag, say)

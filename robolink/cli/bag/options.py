@@ -43,7 +43,7 @@ def overrides(path: str) -> Mapping[str, QoSProfile]:
     """Return the profiles of the file behind `--qos-profile-overrides-path`; none for ''."""
     if not path:
         return {}
-    from robolink.bag.qos_overrides import read_qos_overrides
+    from robolink.bag.qos import read_qos_overrides
 
     return read_qos_overrides(path)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from robolink.bag.background_spin import BackgroundSpin
 from robolink.bag.playing import PlaySettings
-from robolink.bag.playing.served import ServedPlayer
+from robolink.bag.playing.services import ServedPlayer
 from robolink.cli.bag.progress_line import ProgressLine
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.session import opened

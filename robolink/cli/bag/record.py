@@ -252,14 +252,14 @@ def _settings(ctx: typer.Context) -> RecordSettings:
 def _static_topics(path: str) -> Mapping[str, type[Any]]:
     if not path:
         return {}
-    from robolink.bag.static_topics import read_static_topics
+    from robolink.bag.topic import read_static_topics
 
     return read_static_topics(path)
 
 
 def _compression(ctx: typer.Context) -> tuple[str, str]:
     """Return the compression and its mode as a bag's writer takes them."""
-    from robolink.bag.storage_options import chunk_compression
+    from robolink.bag.output_options import chunk_compression
 
     mode, found = ctx.params["compression_mode"], ctx.params["compression_format"]
     if not found:

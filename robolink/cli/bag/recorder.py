@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from robolink.bag.background_spin import BackgroundSpin
 from robolink.bag.information import size_text
 from robolink.bag.recording import Figures, RecordSettings
-from robolink.bag.recording.served import ServedRecording
+from robolink.bag.recording.services import ServedRecording
 from robolink.bag.selection import Selection
 from robolink.cli.bag.progress_line import ProgressLine
 from robolink.cli.shared.output import complain, say, say_json

@@ -16,7 +16,7 @@ PREFIXES = "--param-prefixes"
 
 
 def _parameters(ctx: typer.Context, incomplete: str) -> list[str]:
-    from robolink.cli.param.values import of_node
+    from robolink.cli.param.verbs import of_node
 
     return of_node(ctx, incomplete)
 

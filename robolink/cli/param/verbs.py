@@ -1,8 +1,11 @@
-"""The verbs of parameters: what they ask nodes, what they show, and what they set."""
+"""The verbs of parameters, over a client of one node's parameter services; and completion of parameter names."""
 
 from __future__ import annotations
 
+import contextlib
+import queue
 import re
+import threading
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,9 +15,11 @@ import typer
 from robolink.arguments.parameter_file import ParameterFileError, read_parameter_file
 from robolink.cli.param.values import Type, as_file, fitting, in_json, label, plain, read, type_name
 from robolink.cli.shared import messages
+from robolink.cli.shared.complete import WITHIN, offered
 from robolink.cli.shared.graph import absolute, is_hidden, no_such_node
 from robolink.cli.shared.output import complain, say, tell
 from robolink.cli.shared.session import looking, node_of
+from robolink.context import Context
 from robolink.exceptions import ExternalShutdownException, NotFoundError, RobolinkError
 from robolink.interfaces.rcl_interfaces import srv
 from robolink.interfaces.rcl_interfaces.msg import (
@@ -29,7 +34,6 @@ from robolink.wire import EndpointKind
 
 if TYPE_CHECKING:
     from robolink.arguments.overrides import Override, Value
-    from robolink.context import Context
     from robolink.node import Node
 
 
@@ -382,3 +386,28 @@ def _tell(result: SetParametersResult, as_json: bool, done: str, failed: str) ->
 
 def _plain(result: SetParametersResult) -> dict[str, Any]:
     return {"successful": result.successful, "reason": result.reason}
+
+
+def of_node(ctx: Any, incomplete: str) -> list[str]:
+    """Return the parameters of the node on the command line; nothing if it does not answer in time."""
+    names: queue.SimpleQueue[list[str]] = queue.SimpleQueue()
+    node = str(ctx.params.get("node") or "")
+    # In the background, since neither the network nor the node need answer.
+    threading.Thread(target=_ask, args=(node, names), name="robolink completion", daemon=True).start()
+    with contextlib.suppress(queue.Empty):
+        return offered(names.get(timeout=2 * WITHIN), incomplete)
+    return []
+
+
+def _ask(node: str, names: queue.SimpleQueue[list[str]]) -> None:
+    context = Context()
+    try:
+        context.init(args=[])
+        name = absolute(node)
+        if serves(context, name):
+            names.put(ParameterClient(node_of(context), name).names())
+    except Exception:  # noqa: BLE001, S110 - there is nothing to offer, and nobody to tell
+        pass
+    finally:
+        names.put([])
+        context.try_shutdown()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.bag.metadata import FILE_NAME as METADATA
-from robolink.bag.playing.types import class_of
+from robolink.bag.playing.publishers import class_of
 from robolink.bag.reader import Bag, open_bag
 from robolink.bag.storage.opening import ENDINGS
 from robolink.cli.shared.graph import matching_qos

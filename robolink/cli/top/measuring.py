@@ -1,4 +1,12 @@
-"""Measurements of `top`: traffic of topics, processes of nodes, and both in an interval."""
+"""Measurements of `top`: traffic of topics, processes of nodes, and both in an interval.
+
+Of traffic nothing is decoded and no payload is copied. The callback of the network is C from end to end
+(`graph.endpoint.timed_arrival`), and a thread of its own empties the queue.
+
+Processes are found by their connections: one between two sessions of one machine has two ends here. Ours is known from
+the transport, and the process that holds the other is known to the system, if it is the user's own. Nodes behind a
+router have no connection with us: those that a launcher has started are known by name.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,14 @@
-"""Messages of any topic as they arrive, decoded as far as they can be, and the filter over them."""
+"""Messages of any topic as they arrive, decoded as far as they can be, and the filter over them.
+
+A thread of its own empties the queue, so that it does not grow while the terminal is blocked.
+
+    passes = compile_filter("m.linear.x > 0.2 and hypot(m.linear.x, m.linear.y) < 1", Twist)
+    if passes(message): ...
+
+The expression of a filter is evaluated by Python, as ros2topic does: it is the user's own text, in the user's own
+shell. Names are `m`, Python's builtins, and the functions and constants of `math`. What no message can make right
+(syntax, an unknown name, a field that the type has not) is refused before the first message.
+"""
 
 from __future__ import annotations
 

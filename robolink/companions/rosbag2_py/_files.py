@@ -9,14 +9,13 @@ from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 
-from robolink.bag.definition import message_definition
+from robolink.bag.converting import reindex
 from robolink.bag.information import SORTS, details_of, info_text, topic_names
+from robolink.bag.output_options import chunk_compression
 from robolink.bag.reader import Bag, open_bag
-from robolink.bag.reindexing import reindex
 from robolink.bag.selection import SERVICE_EVENT
 from robolink.bag.storage.opening import STORAGES
-from robolink.bag.storage_options import chunk_compression
-from robolink.bag.topic import BagError, BagMessage, BagTopic
+from robolink.bag.topic import BagError, BagMessage, BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.companions.rosbag2_py._storage import (
     BagMetadata,

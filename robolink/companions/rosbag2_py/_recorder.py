@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from robolink.bag.background_spin import BackgroundSpin
+from robolink.bag.output_options import chunk_compression
 from robolink.bag.recording import RecordSettings
-from robolink.bag.recording.served import ServedRecording
+from robolink.bag.recording.services import ServedRecording
 from robolink.bag.selection import SERVICE_EVENT, Selection
-from robolink.bag.static_topics import read_static_topics
-from robolink.bag.storage_options import chunk_compression
-from robolink.bag.topic import BagError
+from robolink.bag.topic import BagError, read_static_topics
 from robolink.companions.rosbag2_py._storage import StorageOptions, get_default_storage_id
 from robolink.context import Context
 from robolink.exceptions import DocumentError, nearest

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from robolink.bag import information, metadata
-from robolink.bag.offered_qos import profiles_of_text
+from robolink.bag.qos import profiles_of_text
 from robolink.bag.topic import BagError, BagTopic
 from robolink.duration import Duration as Span
 from robolink.exceptions import DocumentError

@@ -13,7 +13,7 @@ from pathlib import Path
 from robolink.bag.converting import convert
 from robolink.bag.output_options import read_outputs
 from robolink.bag.playing import PlaySettings
-from robolink.bag.playing.served import ServedPlayer
+from robolink.bag.playing.services import ServedPlayer
 from robolink.bag.playing.settings import RECEIVED, SENT
 from robolink.bag.reader import open_bag
 from robolink.bag.selection import Selection

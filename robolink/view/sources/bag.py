@@ -6,14 +6,12 @@ import struct
 from collections.abc import Container, Iterable
 from typing import Any
 
-from robolink.bag.definition import message_definition
-from robolink.bag.playing.offers import is_latched
-from robolink.bag.playing.playback import Playback
-from robolink.bag.playing.playlist import Playlist
+from robolink.bag.playing.playback import Playback, Playlist
+from robolink.bag.playing.publishers import is_latched
 from robolink.bag.playing.settings import PlaySettings
 from robolink.bag.reader import Bag
 from robolink.bag.selection import EVERYTHING
-from robolink.bag.topic import BagMessage, BagTopic
+from robolink.bag.topic import BagMessage, BagTopic, message_definition
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find_announced
 from robolink.system import clocks

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from robolink.bag.definition import message_definition
+from robolink.bag.topic import message_definition
 from robolink.context import Context
 from robolink.exceptions import RobolinkError
 from robolink.message import Service

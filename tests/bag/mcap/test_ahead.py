@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.bag.mcap import Reader, Writer
-from robolink.bag.mcap.ahead import ALONE, LARGE, loaded
-from robolink.bag.mcap.blocks import Block
+from robolink.bag.mcap.blocks import ALONE, LARGE, Block, loaded
 from robolink.bag.mcap.records import Buffer
 
 BLOCKS = [Block(each, 1, each, each, size=LARGE) for each in range(7)]

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.bag.mcap import McapError, MissingCompressionError, Reader, Writer, compression, reindex
+from robolink.bag.mcap import McapError, MissingCompressionError, Reader, Writer, chunk, reindex
 from robolink.bag.mcap.blocks import Source
 from robolink.bag.mcap.records import (
     CHUNK,
@@ -150,8 +150,8 @@ def test_a_chunk_that_claims_to_be_huge_is_no_bomb(tmp_path: Path) -> None:
 def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "packed.mcap"
     made(path, "zstd")
-    compression._module.cache_clear()
-    monkeypatch.setitem(compression.MODULES, "zstd", ("robolink_has_no_zstd",))
+    chunk._module.cache_clear()
+    monkeypatch.setitem(chunk.MODULES, "zstd", ("robolink_has_no_zstd",))
     try:
         with Reader(path) as reader:  # what is in it can be told
             assert reader.statistics.message_count == 400
@@ -167,7 +167,7 @@ def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             Writer(tmp_path / "other.mcap", compression="zstd")
     finally:
         monkeypatch.undo()
-        compression._module.cache_clear()
+        chunk._module.cache_clear()
 
 
 PARSERS = (

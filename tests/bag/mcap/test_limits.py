@@ -17,8 +17,8 @@ import pytest
 
 from robolink.bag import limits
 from robolink.bag.mcap import Reader
-from robolink.bag.mcap.compression import compressor
-from robolink.bag.mcap.ordering import in_log_order
+from robolink.bag.mcap.blocks import in_log_order
+from robolink.bag.mcap.chunk import compressor
 from robolink.bag.mcap.records import (
     DATA_END,
     MAGIC,

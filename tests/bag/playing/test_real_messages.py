@@ -9,9 +9,8 @@ from typing import Any
 import pytest
 
 from robolink import Node
-from robolink.bag.definition import message_definition
 from robolink.bag.playing import Player
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.message import type_hash
 from robolink.testing import System

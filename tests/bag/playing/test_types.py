@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.bag.definition import SEPARATOR, message_definition
-from robolink.bag.playing.types import class_of, class_of_definition
-from robolink.bag.topic import BagTopic
+from robolink.bag.playing.publishers import class_of, class_of_definition
+from robolink.bag.topic import SEPARATOR, BagTopic, message_definition
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find
 from robolink.interfaces.std_msgs.msg import Int32, String

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from robolink import Context, Node, type_lookup
-from robolink.bag.recording import News, Recording, RecordingError, RecordSettings, Selection, collector
+from robolink.bag.recording import News, Recording, RecordingError, RecordSettings, Selection, listener
 from robolink.bag.recording.writing import WritableBag
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.rosgraph_msgs.msg import Clock
@@ -375,7 +375,7 @@ def test_times_before_1970_end_no_recording(
     made: Made, talker: Node, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """A bag has no such times: an MCAP cannot say them. A sender's clock, or /clock, may be wrong all the same."""
-    monkeypatch.setattr(collector, "unpack_attachment", lambda text: unpack_attachment(text)._replace(timestamp=-5))
+    monkeypatch.setattr(listener, "unpack_attachment", lambda text: unpack_attachment(text)._replace(timestamp=-5))
     clock = talker.create_publisher(Clock, "/clock", 10)
     count = talker.create_publisher(Int32, "/count", 10)
     recording = made(Selection(topics=("/count",)), settings=RecordSettings(use_sim_time=True))

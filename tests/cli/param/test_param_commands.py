@@ -15,7 +15,7 @@ from robolink import Node, Parameter
 from robolink.arguments.parameter_file import parse_parameter_file
 from robolink.cli.main import main
 from robolink.cli.param import each_with_its_flag, verbs
-from robolink.cli.param.values import as_file, fitting, nested, of_node, read
+from robolink.cli.param.values import as_file, fitting, nested, read
 from robolink.cli.shared import complete
 from robolink.interfaces.rcl_interfaces.msg import (
     ParameterDescriptor,
@@ -230,11 +230,11 @@ class Typed:
 
 @pytest.mark.usefixtures("driver")
 def test_names_are_completed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.cli.param.values.WITHIN", 5.0)
-    assert of_node(Typed("/lab/driver"), "s") == ["speed", "start_type_description_service"]
-    assert of_node(Typed("lab/driver"), "arm.") == ["arm.ids", "arm.length"]
-    assert of_node(Typed("/nobody"), "") == []
-    assert of_node(Typed(""), "") == []
+    monkeypatch.setattr("robolink.cli.param.verbs.WITHIN", 5.0)
+    assert verbs.of_node(Typed("/lab/driver"), "s") == ["speed", "start_type_description_service"]
+    assert verbs.of_node(Typed("lab/driver"), "arm.") == ["arm.ids", "arm.length"]
+    assert verbs.of_node(Typed("/nobody"), "") == []
+    assert verbs.of_node(Typed(""), "") == []
     assert complete.node_names("/lab/d") == ["/lab/driver"]
 
 

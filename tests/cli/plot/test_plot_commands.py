@@ -15,8 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Node
-from robolink.bag.definition import message_definition
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.cli.main import main
 from robolink.cli.plot import drawing, messages

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 import pytest
 
-from robolink.bag.definition import message_definition
+from robolink.bag.topic import message_definition
 from robolink.interfaces import find, names
 from robolink.message import AtMost, Message, Sequence, Size, encode, float64, int8, string, to_builtins, uint8, wstring
 from tests.support.filled import filled

@@ -9,9 +9,8 @@ from typing import Any
 
 import pytest
 
-from robolink.bag.definition import message_definition
 from robolink.bag.reader import open_bag
-from robolink.bag.topic import BagTopic
+from robolink.bag.topic import BagTopic, message_definition
 from robolink.bag.writer import BagWriter
 from robolink.interfaces.geometry_msgs.msg import (
     Point,
