@@ -132,6 +132,7 @@ ROOMS = {
     "diagnostic_updater": "robolink.companions.diagnostic_updater",
     "nav2_common": "",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
+    "nav2_simple_commander.utils": "robolink.companions.nav2_simple_commander",
     **LAUNCH_ROOMS,
     **{name: room for name, room in OPTIONAL.items() if is_here(room)},
 }

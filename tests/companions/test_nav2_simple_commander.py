@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from robolink.companions.nav2_simple_commander.clients import ACTIONS
-from robolink.companions.nav2_simple_commander.utils import euler_to_quaternion
+from robolink.companions.nav2_simple_commander import euler_to_quaternion
+from robolink.companions.nav2_simple_commander.goals import ACTIONS
 from robolink.interfaces.nav2_msgs import action, srv
 from robolink.testing import System
 from tests.support.small_nav2 import Nav2

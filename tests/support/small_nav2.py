@@ -6,7 +6,7 @@ import functools
 from typing import Any
 
 from robolink.action import ActionServer, CancelResponse, GoalResponse
-from robolink.companions.nav2_simple_commander.clients import ACTIONS
+from robolink.companions.nav2_simple_commander.goals import ACTIONS
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from robolink.interfaces.lifecycle_msgs.srv import GetState
 from robolink.interfaces.nav2_msgs import srv
