@@ -29,7 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from benchmarks.robots import RATE, Fleet
 from robolink import Context, Node
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 
 TOKEN = "benchmark"
 SETTLING = 3.0

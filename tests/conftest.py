@@ -23,7 +23,7 @@ from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.host.patches.snapshot import process_as_before
 from robolink.impl.log_output import Record, output
-from robolink.transport import joining, shared_pools, zenoh, zenoh_tokens
+from robolink.transport import joining, shared_memory, zenoh, zenoh_handles
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.transport.zenoh import ZenohTransport
 from tests.support import process_starts
@@ -174,7 +174,7 @@ def zenoh_net(domain: int) -> Iterator[Network]:
 def patient_looks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Looks at the graph wait for those, too, whom a machine that does ten things at once holds up for a while."""
     for name, seconds in {"QUIET": 0.3, "PATIENCE": 5.0, "LONGEST": 30.0}.items():
-        monkeypatch.setattr(zenoh_tokens, name, seconds)
+        monkeypatch.setattr(zenoh_handles, name, seconds)
     monkeypatch.setattr(zenoh, "REUNION", 0.5)
     monkeypatch.setattr(joining, "LINK_WITHIN", 30.0)
 
@@ -242,7 +242,7 @@ def log_lines() -> Iterator[list[Record]]:
     found: list[Record] = []
 
     def collect(record: Record) -> None:
-        if record.file != shared_pools.__file__:
+        if record.file != shared_memory.__file__:
             found.append(record)
 
     logging.set_console_handler(None)

@@ -34,7 +34,7 @@ from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
 from robolink.system import waits
 from robolink.testing.supervisor_thread import Launch
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from robolink.utilities import try_shutdown
 
 if TYPE_CHECKING:

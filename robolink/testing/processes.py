@@ -26,7 +26,7 @@ from robolink.testing.launching import entry_of
 from robolink.testing.stage import Failure, Named, Wanted, full
 from robolink.testing.supervisor_thread import Launch
 from robolink.text.names import the_one
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from robolink.transport.zenoh import ZenohTransport
 from robolink.wire import NodeToken, graph_pattern
 

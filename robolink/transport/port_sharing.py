@@ -9,11 +9,16 @@ import contextlib
 import errno
 import json
 import os
+import socket
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from robolink.constants import LAST_DOMAIN
+from robolink.exceptions import TransportError
+from robolink.networks.asked import FIRST_PORT
 from robolink.system import clocks
 from robolink.transport.reach import address_of, host_of, mode_of, port_of, read
 
@@ -40,8 +45,6 @@ def fixed_listeners(config: zenoh.Config) -> list[str]:
 
 def is_taken(endpoint: str) -> bool:
     """True if somebody listens at an endpoint of this machine already."""
-    import socket  # late: it costs every node's start 2 ms
-
     try:
         found = socket.getaddrinfo(host_of(endpoint), port_of(endpoint), type=socket.SOCK_STREAM)
     except (OSError, UnicodeError):
@@ -134,3 +137,28 @@ class PortClaim:
             self._file = -1
             if not _DELETE_ON_CLOSE:
                 self.path.unlink(missing_ok=True)
+
+
+@contextmanager
+def free_domain() -> Iterator[int]:
+    """Reserve an unused domain id while a `with` lasts. Raises TransportError when none is free.
+
+    A UDP socket with the number of its port is the lock, so that tests which run side by side take different ones.
+    """
+    import random  # late: only tests and benchmarks look for a domain
+
+    for domain in random.sample(range(1, LAST_DOMAIN + 1), LAST_DOMAIN):
+        with socket.socket(type=socket.SOCK_DGRAM) as mark:
+            try:
+                mark.bind(("127.0.0.1", FIRST_PORT + domain))
+            except OSError:
+                continue
+            if is_free(FIRST_PORT + domain):
+                yield domain
+                return
+    raise TransportError(f"all domains from 1 to {LAST_DOMAIN} are in use on this machine")
+
+
+def is_free(port: int) -> bool:
+    """True if nobody listens on a port of this machine; connections that have ended do not count."""
+    return not is_taken(f"tcp/127.0.0.1:{port}")

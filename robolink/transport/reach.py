@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import time
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from robolink.system import clocks
 
 if TYPE_CHECKING:
     import zenoh
@@ -160,3 +164,34 @@ def _interfaces(control: dict[str, Any]) -> tuple[str, ...]:
         return ()
     named = [subject.get("interfaces") for subject in control["subjects"] or ()]
     return tuple(sorted({each for some in named for each in some})) if named and all(named) else ()
+
+
+STEP = 0.005
+"""Interval at which answers are looked for, in seconds."""
+
+
+def answering(config: zenoh.Config, sought: Collection[str], within: float) -> frozenset[str]:
+    """Return the ids of sessions that answer a multicast, once all that are sought have, or the time is over.
+
+    Args:
+        config: Zenoh's configuration of a session, which has the group and the interface.
+        sought: Ids of sessions.
+        within: Timeout of their answers, in seconds.
+    """
+    import zenoh  # late: it takes the command line 40 ms, and few commands scout
+
+    found = set[str]()
+    deadline = clocks.monotonic() + within
+    try:
+        scout = zenoh.scout(what="peer|router", config=config)
+    except zenoh.ZError:  # there is no interface for it
+        return frozenset()
+    try:
+        while not found.issuperset(sought) and clocks.monotonic() < deadline:
+            if (hello := scout.try_recv()) is None:
+                time.sleep(STEP)
+            else:
+                found.add(str(hello.zid))
+    finally:
+        scout.stop()  # type: ignore[no-untyped-call]
+    return frozenset(found)

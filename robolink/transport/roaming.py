@@ -23,6 +23,7 @@ from robolink.qos import QoSProfile
 from robolink.system import clocks
 from robolink.system.waits import get_within
 from robolink.transport import addresses, lifetime
+from robolink.transport.addresses import Place, Probes, waiting
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
 from robolink.transport.reach import Link, host_of, port_of
 from robolink.transport.roaming_handles import (
@@ -32,7 +33,6 @@ from robolink.transport.roaming_handles import (
     RoamingSubscription,
     RoamingWatch,
 )
-from robolink.transport.stuck_links import Place, Probes, waiting
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_declare import ask, make_gate
 from robolink.transport.zenoh_recovery import Recovery

@@ -14,10 +14,8 @@ from robolink.transport.base import Handle, Sink
 from robolink.transport.history import Latch, latched_depth
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_declare import aim_gate, close_gate, make_gate
-from robolink.transport.zenoh_handles import ZenohOutlet
-from robolink.transport.zenoh_mending import Mending
-from robolink.transport.zenoh_sieve import Sieve
-from robolink.transport.zenoh_tokens import Changes
+from robolink.transport.zenoh_handles import Changes, ZenohOutlet
+from robolink.transport.zenoh_mending import Mending, Sieve
 
 Retained = Latch[tuple[bytes, bytes]]
 """Payloads and attachments that a publisher has sent."""

@@ -7,25 +7,24 @@ import functools
 import json
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import zenoh
 
 from robolink.exceptions import TransportError
-from robolink.networks import limits
+from robolink.networks import hosts, limits
 from robolink.networks.asked import domain_id
 from robolink.networks.router import router_settings
 from robolink.security import session
 from robolink.security.session import Security
 from robolink.system import clocks
-from robolink.transport import lifetime, permission_watch, secure_config
+from robolink.transport import lifetime, secure_config, secured
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.certificates import Validity
-from robolink.transport.enclave_keys import Keys
 from robolink.transport.network import reason
 from robolink.transport.port_sharing import PortClaim, is_taken
-from robolink.transport.reach import Link, links_of, port_of, reach
-from robolink.transport.router_faults import faults
+from robolink.transport.reach import Link, address_of, links_of, port_of, reach
+from robolink.transport.secure_config import Keys
 
 CLOSE_WITHIN = 0.5
 """Longest `close`, in seconds; then it goes on in the background, for 10 s if a handshake is not answered."""
@@ -54,7 +53,7 @@ class Router:
         self._reach = reach(self._config())
         self._sessions: list[zenoh.Session] = []
         self.has_left = False
-        self._watch = permission_watch.Watch(self) if security else None
+        self._watch = secured.Watch(self) if security else None
         lifetime.watch_over(self)
 
     @property
@@ -171,3 +170,49 @@ def running(listen: Sequence[str], connect: Sequence[str]) -> Iterator[Router]:
         except zenoh.ZError as error:
             raise TransportError(f"cannot listen at {' and '.join(listen)}: {reason(error)}") from None
         yield router
+
+
+WITHIN = 1.0
+"""Timeout of the answer of each of them, in seconds."""
+
+_TRIED = "it is tried again and again"
+
+
+def faults(connects: Sequence[str], own: str, links: Iterable[Link]) -> list[str]:
+    """Return a line for each endpoint that has brought no link; none if all is well. It takes a second for each.
+
+    Args:
+        connects: Zenoh's endpoints to which a router connects.
+        own: Its session id.
+        links: Its connections.
+    """
+    linked = list(links)
+    known: dict[str, str] = {}
+    texts = ((each, _fault(each, own, linked, known)) for each in connects)
+    return [f"{endpoint}: {text}" for endpoint, text in texts if text]
+
+
+def _fault(endpoint: str, own: str, links: list[Link], known: dict[str, str]) -> str:
+    """Return the fault of one endpoint, '' if there is none; `known` has the endpoints of the sessions met so far."""
+    protocol, _, rest = address_of(endpoint).partition("/")
+    host = hosts.parse(rest)
+    if protocol != "tcp" or host is None:  # whose greeting cannot be read
+        met = any(each.there.startswith(f"{protocol}/") and port_of(each.there) == port_of(endpoint) for each in links)
+        return "" if met else f"nobody there has let this router in: is one on, with keys of this authority? {_TRIED}"
+    try:
+        port = hosts.seek(host, 0, WITHIN, WITHIN)
+    except hosts.UnknownHostError:
+        return f"no machine of this name is known; {_TRIED}"
+    if port is None:
+        return f"nobody answers there; {_TRIED}"
+    if not port.speaks_zenoh:
+        return f"what listens there does not answer as a router does; {_TRIED}"
+    if port.session == own:
+        return "that is this router itself: name another one's address"
+    if port.session in known:
+        return (
+            f"is {known[port.session]} once more, by its id {port.session[:8]}: one of the two is enough; "
+            "if they are two routers, give each an id of its own"
+        )
+    known[port.session] = endpoint
+    return "" if any(each.session == port.session for each in links) else f"a {port.role} answers, but is not linked"

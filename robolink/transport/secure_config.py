@@ -6,11 +6,14 @@ import functools
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from robolink.exceptions import SecurityError
 from robolink.logging import get_logger
 from robolink.networks.asked import domain_id
 from robolink.security import session
-from robolink.security.keystore import ROUTER
+from robolink.security.keystore import CERTIFICATE, KEY, ROUTER
 from robolink.security.session import Security
+from robolink.system import clocks
+from robolink.transport import certificates
 from robolink.transport.reach import reach
 
 if TYPE_CHECKING:
@@ -64,3 +67,29 @@ def router_security(environ: Mapping[str, str]) -> Security | None:
     for warning in security.warnings if security else ():
         get_logger("security").warning(warning)
     return security
+
+
+class Keys:
+    """Keys and rights of a session. They do not refer to it, so that it is freed when nobody holds it.
+
+    Raises SecurityError where nobody would let a session with these keys in.
+    """
+
+    def __init__(self, security: Security) -> None:
+        self.take(security)
+
+    def take(self, security: Security) -> None:
+        """Use others from now on; raises SecurityError, and changes nothing, where nobody would let a session in."""
+        files = (str(security.folder / each) for each in (CERTIFICATE, KEY, session.AUTHORITY))
+        try:
+            self.valid = certificates.validity_of(*files)
+        except SecurityError as error:
+            raise SecurityError(f"enclave '{security.enclave}': {error}") from None
+        self.security = security
+        self.refusal = functools.lru_cache(maxsize=1024)(security.rights.refusal)
+
+    def secure(self, config: zenoh.Config) -> None:
+        """Close a configuration to whoever has no keys, and to everybody once the certificate has ended."""
+        secure(self.security, config)
+        if clocks.time_of_day() >= self.valid.end:
+            isolate(config)

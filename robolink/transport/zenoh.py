@@ -20,15 +20,14 @@ from robolink.exceptions import OverwrittenError
 from robolink.networks.settings import SOUGHT_EVERY
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.system import clocks, heap
-from robolink.transport import lifetime
-from robolink.transport import zenoh_calls as calls
+from robolink.transport import lifetime, zenoh_handles
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Query, Sample, Sink, Transport, make_sample, refuse_giant
 from robolink.transport.joining import join, leave
 from robolink.transport.reach import Link, links_of
-from robolink.transport.shared_pools import PoolLimit
-from robolink.transport.zenoh_tokens import Changes, ZenohToken, ZenohWatch, settled
+from robolink.transport.shared_memory import PoolLimit
+from robolink.transport.zenoh_handles import Changes, ZenohToken, ZenohWatch, settled
 
 REUNION = SOUGHT_EVERY + 0.05
 """Time in which the peers of an earlier holder of the rendezvous port find the new one, in seconds."""
@@ -69,7 +68,7 @@ class ZenohTransport(Transport):
         lifetime.refuse_if_forked()
         self._holdings = handles.Holdings()
         self._ends: weakref.WeakSet[Sink] = weakref.WeakSet()
-        self._calls: weakref.WeakSet[calls.ZenohCall] = weakref.WeakSet()
+        self._calls: weakref.WeakSet[zenoh_handles.ZenohCall] = weakref.WeakSet()
         self._has_left = False
         with lifetime.inside:
             before = clocks.time_of_day()
@@ -103,7 +102,7 @@ class ZenohTransport(Transport):
         refuse_giant(key, payload)
         gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
         self._ends.add(end)
-        call = calls.ZenohCall(self._make(key, declare.call, key, payload, attachment, gate, end), gate, end)
+        call = zenoh_handles.ZenohCall(self._make(key, declare.call, key, payload, attachment, gate, end), gate, end)
         self._calls.add(call)
         return call
 
@@ -169,7 +168,7 @@ class ZenohTransport(Transport):
         if kind is Sample:
             own: Sample = arrived
             return own
-        return calls.content_of_reply(arrived)
+        return zenoh_handles.content_of_reply(arrived)
 
     def opener(self, check: Callable[[bytes], object], decode: Callable[[bytes], Any]) -> Callable[[Any], Any]:
         """Return a function that does `read`, `check` and `decode`; in one frame where the message is small."""
@@ -197,7 +196,7 @@ class ZenohTransport(Transport):
 
     def accept(self, arrived: Any) -> Query:
         """Convert an item of a server's sink to a Query. Raises OverwrittenError, and ends the call, as `read` does."""
-        return calls.ZenohQuery(arrived)
+        return zenoh_handles.ZenohQuery(arrived)
 
     def close(self) -> None:
         """Undeclare everything and leave the network; calls under way end. Safe to call twice."""

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import functools
+import queue
 import threading
 from collections import Counter
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import zenoh
 
-from robolink.exceptions import TransportClosedError, TransportError
+from robolink.exceptions import OverwrittenError, SessionReplacedError, TransportClosedError, TransportError
 from robolink.logging import get_logger
 from robolink.networks.settings import LONGEST_WAIT
 from robolink.system import clocks, heap
+from robolink.system.terminal import shown
+from robolink.system.waits import get_within
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.network import reason
@@ -235,3 +240,218 @@ class ZenohSubscription(Declared):
             self._topic.sinks = tuple(sink for sink in self._topic.sinks if sink is not self._gate)
             self._topic.latched = tuple(sink for sink in self._topic.latched if sink is not self._gate)
         super().close()
+
+
+QUIET = 0.03
+"""Quiet time after which no more peers are expected, in seconds."""
+
+PATIENCE = 0.5
+"""Quiet time after which peers that have not answered count as frozen, in seconds."""
+
+LONGEST = 3.0
+"""Timeout of the discovery in seconds: even a busy machine's peers have announced everything by then."""
+
+
+class ZenohToken(Declared):
+    """A token that is announced."""
+
+    __slots__ = ("_token",)
+
+    def __init__(self, holdings: Holdings, announced: Any, token: str) -> None:
+        self._token = token
+        super().__init__(holdings, [announced])
+        with holdings.lock:
+            holdings.tokens[token] += 1
+
+    def close(self) -> None:
+        """Undeclare. Safe to call twice."""
+        with self._holdings.lock:
+            if self in self._holdings.handles:
+                tokens = self._holdings.tokens
+                tokens[self._token] -= 1
+                if not tokens[self._token]:
+                    del tokens[self._token]
+        super().close()
+
+
+class Changes:
+    """Deduplicates token changes: Zenoh may report one token both as history and as a change."""
+
+    def __init__(self, on_change: Callable[[str, bool], object], own: Mapping[str, int] | None = None) -> None:
+        self._own: Mapping[str, int] = {} if own is None else own
+        self._on_change: Callable[[str, bool], object] | None = on_change
+        self._telling = threading.RLock()
+        self._found: set[str] | None = None
+        self.alive: set[str] = set()
+
+    def __call__(self, sample: zenoh.Sample) -> None:
+        """Handle a token change from Zenoh."""
+        token, alive = str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT
+        if alive or not self._own.get(token):  # else the end of another session in which it was announced, too
+            self.change(token, alive)
+
+    def change(self, token: str, alive: bool) -> object:
+        """Report a token that has come or gone, unless that is known; return what `on_change` returns."""
+        with self._telling:
+            if self._found is not None:
+                (self._found.add if alive else self._found.discard)(token)
+            return self._tell(token, alive)
+
+    def _tell(self, token: str, alive: bool) -> object:
+        if self._on_change is None or alive == (token in self.alive):
+            return None
+        (self.alive.add if alive else self.alive.discard)(token)
+        answer = self._on_change(token, alive)
+        if answer is False:
+            self.alive.discard(token)
+        return answer
+
+    def count_again(self) -> None:
+        """Note from now on which tokens are found again, in another session."""
+        with self._telling:
+            self._found = set()
+
+    def settle(self) -> None:
+        """Report those as gone that have not been found again."""
+        with self._telling:
+            found, self._found = self._found, None
+            for token in sorted(self.alive - found) if found is not None else ():
+                self._tell(token, False)
+
+    def end(self) -> None:
+        """Stop reporting changes."""
+        # Waits for what is just being told, but not for ever: its hearer may wait for whoever closes.
+        waited = self._telling.acquire(timeout=0.1)
+        self._on_change = None
+        if waited:
+            self._telling.release()
+
+
+class ZenohWatch(Declared):
+    """A watch of tokens."""
+
+    __slots__ = ("_changes",)
+
+    def __init__(self, holdings: Holdings, made: tuple[Any, Sink], changes: Changes) -> None:
+        self._changes = changes
+        subscriber, feed = made
+        super().__init__(holdings, [subscriber], feed)
+
+    def shut(self, why: str) -> list[Any]:
+        """Stop reporting changes; return the entities to undeclare."""
+        self._changes.end()
+        return super().shut(why)
+
+
+def settled(
+    arrived: queue.SimpleQueue[Any], ask: Callable[[Callable[[], object], float], object], peers: Callable[[], set[str]]
+) -> set[str]:
+    """Collect tokens until all peers have announced theirs and no more peers turn up."""
+    changes, known = Changes(lambda token, alive: None), set[str]()
+    begin = news = clocks.monotonic()
+
+    def left() -> float:
+        return min(news + PATIENCE, begin + LONGEST) - clocks.monotonic()
+
+    def collect(quiet: float) -> None:
+        """Collect until the peers have answered, or nothing has come for `quiet` seconds."""
+        nonlocal news
+        while (longest := min(left(), quiet)) > 0:
+            try:
+                sample = get_within(arrived, longest)
+            except queue.Empty:
+                return
+            if sample is None:
+                return
+            news = clocks.monotonic()
+            changes(sample)
+
+    was_quiet = False
+    while left() > 0:
+        before = peers()
+        if not before <= known:
+            news, known = clocks.monotonic(), known | before
+        # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
+        ask(functools.partial(arrived.put, None), LONGEST)
+        collect(LONGEST)
+        if was_quiet and peers() == before:
+            break
+        collect(max(QUIET, (clocks.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
+        was_quiet = True
+    return changes.alive
+
+
+LOST = object()
+"""Item of a call's sink in place of an answer that cannot come any more."""
+
+
+class ZenohCall:
+    """A pending call. Giving up is final: neither replies nor the end come after it."""
+
+    def __init__(self, cancel: zenoh.CancellationToken, gate: Any, end: Any) -> None:
+        self._cancel, self._gate, self._end = cancel, gate, end
+        self._lock, self._has_closed = threading.Lock(), False
+
+    def lose(self) -> None:
+        """End it now, since its session is left; unless it has ended, the sink gets LOST, and then the end."""
+        with self._lock:
+            if not self._has_closed:  # the end is called once at most: nothing comes of this after it
+                self._end.__setstate__((_tell_lost, (self._gate.func,), {}, None))
+        quietly(self._cancel.cancel)
+
+    def close(self) -> None:
+        """Cancel the call. Safe to call twice."""
+        with self._lock:
+            self._has_closed = True
+            close_gate(self._gate)
+            close_gate(self._end)
+        quietly(self._cancel.cancel)
+
+
+def _tell_lost(sink: Sink) -> None:
+    sink(LOST)
+    sink(None)
+
+
+class ZenohQuery:
+    """Server's side of a call; freeing it closes it."""
+
+    def __init__(self, raw: zenoh.Query) -> None:
+        self._raw, self._key = raw, raw.key_expr
+        try:
+            self.payload, self.attachment = content(raw.payload), content(raw.attachment)
+        except OverwrittenError:
+            self.close()
+            raise
+
+    def reply(self, payload: bytes, attachment: bytes) -> None:
+        """Send a reply, from any thread. Does nothing when the caller is gone. Raises TransportError for giants."""
+        if len(payload) >= LARGE:
+            refuse_giant(f"the answer to a call of {self._key}", payload)
+        quietly(lambda: self._raw.reply(self._key, payload, attachment=attachment))
+
+    def close(self) -> None:
+        """Finish the call: no more replies will come."""
+        quietly(self._raw.drop)
+
+
+def content(raw: zenoh.ZBytes | None) -> bytes:
+    """Return the bytes, empty for None. Raises OverwrittenError if they are no longer what was sent."""
+    if raw is None:
+        return b""
+    copied, shared = raw.to_bytes(), raw.as_shm()
+    if shared is not None and not shared.is_valid():
+        raise OverwrittenError
+    return copied
+
+
+def content_of_reply(reply: Any) -> Sample:
+    """Return the sample of a reply; raises TransportError for an error reply, SessionReplacedError for LOST."""
+    if reply is LOST:
+        raise SessionReplacedError
+    sample = reply.ok
+    if sample is not None:
+        return Sample(content(sample.payload), content(sample.attachment))
+    error = reply.err
+    text = content(error.payload).decode(errors="replace") if error is not None else ""
+    raise TransportError(f"the server replied with an error: {shown(text, 200)}")

@@ -21,6 +21,8 @@ PATIENCE = 30.0
 class Target:
     """Keeps what it is given."""
 
+    straight = False
+
     def __init__(self, inbox: Inbox) -> None:
         self.sink: functools.partial[Any] = inbox.sink(self)
         self.got: list[Any] = []

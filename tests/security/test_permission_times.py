@@ -16,7 +16,7 @@ from robolink.security.keystore import PERMISSIONS, Keystore
 from robolink.security.policy import Rule
 from robolink.security.rights import load_rights
 from robolink.system import clocks
-from robolink.transport import permission_watch
+from robolink.transport import secured
 from robolink.transport.certificates import Validity
 
 pytest.importorskip("cryptography", reason="needs the extra `security`")
@@ -140,7 +140,7 @@ def test_sessions_follow_the_end_of_anothers_permissions(store: Keystore, monkey
     security = session.wanted(os.environ, 0, "/robot")
     assert security is not None
     robot = Session(security)
-    watch = permission_watch.Watch(robot)
+    watch = secured.Watch(robot)
     assert watch.look()
     assert robot.renewals == 0
     assert robot.security.everybody["/student"].allows("publish", "/a")

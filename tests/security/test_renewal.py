@@ -17,7 +17,7 @@ from robolink.networks.asked import FIRST_PORT
 from robolink.node import Node
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.security.keystore import Keystore
-from robolink.transport import Transport, connect, permission_watch, port_sharing, roaming
+from robolink.transport import Transport, connect, port_sharing, roaming, secured
 from robolink.transport.certificates import Validity
 from robolink.transport.secured import SecuredTransport
 from tests.support.domains import free_domain
@@ -151,9 +151,9 @@ def valid_for(seconds: float, *, before: float = 100 * DAY) -> Validity:
 
 def watched(session: Renewed, monkeypatch: pytest.MonkeyPatch, until: int) -> None:
     """Watch a session until it has been renewed so often, and nobody looks any more: a look's line may come last."""
-    monkeypatch.setattr(permission_watch, "LOOKS_EVERY", 0.01)
+    monkeypatch.setattr(secured, "LOOKS_EVERY", 0.01)
     before = {*threading.enumerate()}
-    permission_watch.watch(session)
+    secured.watch(session)
     wait_until(lambda: session.renewed >= until, LONG)
     session.has_left = True
     for thread in {*threading.enumerate()} - before:

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from robolink.exceptions import TransportError
-from robolink.transport import permission_watch
+from robolink.transport import secured
 from robolink.transport.certificates import Validity
 from tests.support.waits import wait_until
 
@@ -39,10 +39,10 @@ class Fickle:
 
 
 def test_a_renewal_that_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(permission_watch, "LOOKS_EVERY", 0.005)
+    monkeypatch.setattr(secured, "LOOKS_EVERY", 0.005)
     session, before = Fickle(), {*threading.enumerate()}
     try:
-        permission_watch.watch(session)
+        secured.watch(session)
         wait_until(lambda: session.looks > 8)
     finally:
         session.has_left = True

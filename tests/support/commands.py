@@ -32,10 +32,10 @@ from robolink.cli.main import main
 from robolink.cli.action import verbs as action
 from robolink.cli.service import verbs as service
 from robolink.cli.shared import graph
-from robolink.transport import joining, zenoh_tokens
+from robolink.transport import joining, zenoh_handles
 
 type_lookup.ANSWER_WITHIN = service.PATIENCE = graph.PATIENCE = action.PATIENCE = action.CANCELED_WITHIN = 20.0
-zenoh_tokens.PATIENCE, zenoh_tokens.LONGEST, joining.LINK_WITHIN = 5.0, 30.0, 30.0
+zenoh_handles.PATIENCE, zenoh_handles.LONGEST, joining.LINK_WITHIN = 5.0, 30.0, 30.0
 sys.exit(main())
 """
 """The command, told that the machine is busy: no answer comes too late, and a wait of a second needs no explanation."""

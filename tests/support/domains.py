@@ -1,5 +1,5 @@
 """Unused ROS domain ids, for tests that communicate over Zenoh."""
 
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 
 __all__ = ["free_domain"]

@@ -21,7 +21,7 @@ from contextlib import ExitStack
 from functools import partial
 from typing import Any, NamedTuple
 
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from robolink.transport.shared_memory import VARIABLE, decide, this_machine
 from tests.support.obedient import ROOT, line, start, tell
 from tests.support.ports import free_port

@@ -20,7 +20,7 @@ import time
 from contextlib import ExitStack
 
 import robolink
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
 from tests.support.machines import THERE, Machines
 from tests.support.obedient import line, start

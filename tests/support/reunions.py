@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from robolink.security.keystore import Keystore
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
 from tests.support.obedient import line, start, tell
 

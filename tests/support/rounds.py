@@ -27,7 +27,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from robolink.qos import HistoryPolicy
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
 from tests.support.obedient import line, start, tell
 from tests.support.rounds_end import TOPICS

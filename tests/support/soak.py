@@ -26,7 +26,7 @@ import psutil
 
 from robolink.networks.asked import FIRST_PORT
 from robolink.supervisor.reporting.logs import KEPT_RUNS
-from robolink.transport.free_domain import free_domain, is_free
+from robolink.transport.port_sharing import free_domain, is_free
 
 NODES = 5
 PATIENCE = 30.0

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from robolink.transport.shared_pools import MOST_POOLS
+from robolink.transport.shared_memory import MOST_POOLS
 from tests.support import large_messages
 from tests.support.large_messages import freeze, pass_on, restart, tight
 

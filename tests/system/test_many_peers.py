@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
-from robolink.transport import zenoh_tokens
+from robolink.transport import zenoh_handles
 from robolink.transport.zenoh import ZenohTransport
 from tests.support.domains import free_domain
 
@@ -71,7 +71,7 @@ def system() -> Iterator[System]:
 
 @pytest.fixture(autouse=True)
 def _quiet(patient_looks: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(zenoh_tokens, "QUIET", 1.0)  # a busy machine takes its time for twenty links
+    monkeypatch.setattr(zenoh_handles, "QUIET", 1.0)  # a busy machine takes its time for twenty links
 
 
 def test_each_look_lists_all(system: System) -> None:

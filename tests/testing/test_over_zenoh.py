@@ -14,7 +14,7 @@ from robolink import Node
 from robolink.exceptions import NotFoundError
 from robolink.testing import ExpectationError, NodeFailure, System
 from robolink.testing.expectations import OnlyInMemoryError
-from robolink.transport.free_domain import free_domain
+from robolink.transport.port_sharing import free_domain
 from tests.support.commands import MARK
 from tests.support.nodefiles import load_node_file
 

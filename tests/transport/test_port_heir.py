@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 import zenoh
 
-from robolink.transport import port_heir
-from robolink.transport.port_heir import Heir, claim_of
+from robolink.transport import joining
+from robolink.transport.joining import Heir, claim_of
 from robolink.transport.port_sharing import PortClaim
 from robolink.transport.reach import Reach
 from tests.support.waits import wait_until
@@ -34,7 +34,7 @@ def never(listens: bool) -> Any:
 
 @pytest.fixture
 def holder(monkeypatch: pytest.MonkeyPatch) -> Iterator[socket.socket]:
-    monkeypatch.setattr(port_heir, "LOOKS_EVERY", 0.01)
+    monkeypatch.setattr(joining, "LOOKS_EVERY", 0.01)
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server
 

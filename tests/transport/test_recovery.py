@@ -13,15 +13,14 @@ import pytest
 import zenoh
 
 from robolink.qos import QoSProfile
-from robolink.transport import addresses, open_zenoh, roaming, zenoh_cache, zenoh_recovery
+from robolink.transport import addresses, open_zenoh, roaming, zenoh_recovery
+from robolink.transport.addresses import PAUSE, Waiting
 from robolink.transport.base import Sample
 from robolink.transport.reach import Link, Reach
 from robolink.transport.roaming import RoamingTransport
 from robolink.transport.roaming_handles import Holdings, RoamingSubscription
-from robolink.transport.stuck_links import PAUSE, Waiting
-from robolink.transport.zenoh_cache import Answer, Asked, newer, parts, together
 from robolink.transport.zenoh_mending import Mending
-from robolink.transport.zenoh_recovery import Recovery
+from robolink.transport.zenoh_recovery import Answer, Asked, Recovery, newer, parts, together
 from tests.support.ports import free_port
 from tests.support.transports import BEST_EFFORT, CHATTER, KEEP_ALL, OTHER, PLAIN, Ear, latched, stamped, until
 
@@ -64,7 +63,7 @@ def test_a_topic_is_asked_for_once_for_all_of_its_subscriptions() -> None:
 
 
 def test_an_answer_comes_in_parts_that_are_not_too_large() -> None:
-    messages = [(bytes(zenoh_cache.PART // 2), b"%d" % number) for number in range(5)]
+    messages = [(bytes(zenoh_recovery.PART // 2), b"%d" % number) for number in range(5)]
     answers = [msgspec.msgpack.decode(each, type=Answer) for each in parts("key", messages)]
     assert [len(each.messages) for each in answers] == [2, 2, 1]
     assert [each for answer in answers for each in answer.messages] == messages

@@ -18,8 +18,8 @@ from robolink.transport import addresses, network, open_zenoh, roaming
 from robolink.transport.base import Sample
 from robolink.transport.reach import Reach
 from robolink.transport.roaming import Moves, RoamingTransport
-from robolink.transport.zenoh_sieve import MOST, Sieve
-from robolink.transport.zenoh_tokens import Changes
+from robolink.transport.zenoh_handles import Changes
+from robolink.transport.zenoh_mending import MOST, Sieve
 from tests.support import stalls
 from tests.support.reunions import move, play
 from tests.support.transports import (

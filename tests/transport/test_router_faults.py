@@ -9,8 +9,7 @@ import pytest
 from robolink.networks import hosts
 from robolink.networks.port_probe import PEER, ROUTER, STRANGER, Port
 from robolink.transport.reach import Link
-from robolink.transport.router import running
-from robolink.transport.router_faults import faults
+from robolink.transport.router import faults, running
 
 
 def link(session: str, there: str = "tcp/10.0.0.2:7447") -> Link:

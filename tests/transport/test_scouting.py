@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 import zenoh
 
-from robolink.transport.scouting import answering
+from robolink.transport.reach import answering
 
 
 class Hello(NamedTuple):

@@ -11,9 +11,8 @@ import pytest
 
 from robolink import logging
 from robolink.impl.log_output import Record
-from robolink.transport import shared_pools
-from robolink.transport.shared_memory import LEAST_FREE, POOL
-from robolink.transport.shared_pools import MOST_POOLS, PoolLimit, Segment, free_space, held_segments
+from robolink.transport import shared_memory
+from robolink.transport.shared_memory import LEAST_FREE, MOST_POOLS, POOL, PoolLimit, Segment, free_space, held_segments
 
 OPENED = 1000.0
 OWN, OLDER = Segment("own", 12288, OPENED + 0.01), Segment("older", 12288, OPENED - 50)
@@ -104,7 +103,7 @@ def test_a_removed_pool_counts_as_long_as_it_is_held(monkeypatch: pytest.MonkeyP
     folder = tmp_path / "run"
     folder.mkdir()
     (tmp_path / "shm").symlink_to(folder)
-    monkeypatch.setattr(shared_pools, "FOLDER", str(tmp_path / "shm"))
+    monkeypatch.setattr(shared_memory, "FOLDER", str(tmp_path / "shm"))
     with (folder / "1.zenoh").open("wb") as kept, (folder / "2.zenoh").open("wb") as removed:
         for file, size in ((kept, 3), (removed, 5)):
             file.truncate(size)

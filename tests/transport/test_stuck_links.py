@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.transport import stuck_links
-from robolink.transport.stuck_links import PAUSE, Probes, Waiting, pause_of, waiting
+from robolink.transport import addresses
+from robolink.transport.addresses import PAUSE, Probes, Waiting, pause_of, waiting
 from tests.support.transports import until
 
 PLACES = ("10.77.0.1", 7447), ("10.77.0.2", 41668)
@@ -42,7 +42,7 @@ def test_any_answer_of_the_kernels_is_understood(content: bytes) -> None:
 @pytest.mark.parametrize("host", ["127.0.0.1", "::1"])
 def test_the_kernel_finds_a_connection_by_its_ends(host: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = list[bytes]()
-    monkeypatch.setattr(stuck_links, "pause_of", found.append)
+    monkeypatch.setattr(addresses, "pause_of", found.append)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with (
         socket.create_server((host, 0), family=family) as server,
@@ -56,7 +56,7 @@ def test_the_kernel_finds_a_connection_by_its_ends(host: str, monkeypatch: pytes
 
 
 def test_other_systems_are_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stuck_links, "question", None)
+    monkeypatch.setattr(addresses, "question", None)
     monkeypatch.setattr(sys, "platform", "darwin")
     assert waiting([PLACES]) == []
 

@@ -305,6 +305,8 @@ def test_session_ids_are_hex_and_differ(net: Network) -> None:
 class Subscriber:
     """What a subscription of a node is to an inbox: a mailbox."""
 
+    straight = False
+
     def __init__(self, inbox: Inbox, depth: int) -> None:
         self.inbox, self.mailbox, self.sink = inbox, Mailbox(depth), inbox.sink(self)
 

@@ -21,7 +21,7 @@ from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
 from robolink.security import session
 from robolink.transport import certificates, lifetime, network, shared_memory
-from robolink.transport.reach import Reach, reach
+from robolink.transport.reach import Reach, answering, reach
 
 if TYPE_CHECKING:
     import zenoh
@@ -228,9 +228,8 @@ def _with_multicast(facts: Facts, config: zenoh.Config) -> Facts:
     sought = {each.session for each in facts.seen.links}
     if not facts.reach.multicast or not sought:
         return facts
-    from robolink.transport import scouting  # late: it loads Zenoh, which few settings need here
 
-    return facts._replace(by_multicast=scouting.answering(config, sought, MULTICAST_WITHIN))
+    return facts._replace(by_multicast=answering(config, sought, MULTICAST_WITHIN))
 
 
 def _other_domains(facts: Facts) -> list[int]:

@@ -82,10 +82,10 @@ LOOKS_AT_ONE_DOMAIN = """
 import sys
 from robolink.cli.shared import graph
 from robolink.cli.main import main
-from robolink.transport import joining, zenoh_tokens
+from robolink.transport import joining, zenoh_handles
 
 graph.MOST, graph.PORTS_WITHIN = 300, 5.0
-zenoh_tokens.PATIENCE, zenoh_tokens.LONGEST, joining.LINK_WITHIN = 5.0, 30.0, 30.0
+zenoh_handles.PATIENCE, zenoh_handles.LONGEST, joining.LINK_WITHIN = 5.0, 30.0, 30.0
 met, wanted = graph._met_on_this_machine, int(sys.argv.pop(1))
 graph._met_on_this_machine = lambda own: [each for each in met(own) if each == wanted]
 sys.exit(main())
