@@ -9,17 +9,20 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Awaitable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.client import Client
 from robolink.guard_condition import GuardCondition
-from robolink.running.entity import NOTHING, Entity, PolledEntity
+from robolink.running.entity import NOTHING, Entity
 from robolink.service import Service
 from robolink.subscription import Subscription
 from robolink.task import Future
 from robolink.timer import Timer
 from robolink.type_support import in_brackets
+
+if TYPE_CHECKING:
+    from robolink.running.ports import Loop
 
 WaitableT = TypeVar("WaitableT", bound="Waitable")
 
@@ -152,8 +155,11 @@ class Waitable:
         self.destroy()
 
 
-class _PolledWaitable(PolledEntity):
-    """Polls a program's own Waitable for an executor."""
+class _PolledWaitable(Entity):
+    """Polls a program's own Waitable for an executor, before each look at what is ready."""
+
+    waits = False
+    """True if it was found ready and waits its turn."""
 
     def __init__(self, waitable: Waitable) -> None:
         super().__init__()
@@ -161,8 +167,21 @@ class _PolledWaitable(PolledEntity):
         self._waitable = waitable
         self._wait_set = WaitSet()
 
+    def attach(self, executor: Loop, has_turn: bool = False) -> None:
+        """Belong to this executor, which polls it."""
+        super().attach(executor, has_turn)
+        self.waits = has_turn
+        executor._queue_.add_pollable(self)
+
+    def detach(self) -> None:
+        """Belong to no executor; nothing polls it then."""
+        queue = self._queue_
+        if queue is not None:
+            queue.remove_pollable(self)
+        super().detach()
+
     def is_ready(self) -> bool:
-        """True if the Waitable says so."""
+        """True if the Waitable says so; called by the thread that spins."""
         self._waitable.add_to_wait_set(self._wait_set)
         return self._waitable.is_ready(self._wait_set)
 

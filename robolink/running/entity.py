@@ -117,30 +117,6 @@ class Entity(Destroyable):
         raise NotImplementedError
 
 
-class PolledEntity(Entity):
-    """Entity that is polled: its executor asks it, before each look at what is ready, if it is ready too."""
-
-    waits = False
-    """True if it was found ready and waits its turn."""
-
-    def is_ready(self) -> bool:
-        """True if there is something to execute; called by the thread that spins."""
-        raise NotImplementedError
-
-    def attach(self, executor: Loop, has_turn: bool = False) -> None:
-        """Belong to this executor, which polls it."""
-        super().attach(executor, has_turn)
-        self.waits = has_turn
-        executor._queue_.add_pollable(self)
-
-    def detach(self) -> None:
-        """Belong to no executor; nothing polls it then."""
-        queue = self._queue_
-        if queue is not None:
-            queue.remove_pollable(self)
-        super().detach()
-
-
 class Receiver(Entity):
     """Entity that a transport delivers to: it has a mailbox, and a sink that leads to the executor's inbox.
 
