@@ -74,7 +74,9 @@ def test_help_imports_nothing_heavy() -> None:
             *(["list"], "no command named 'list' (did you mean 'pkg list', 'learn list', 'topic list' ...?)"),
             marks=pytest.mark.annex("learn"),
         ),
-        (["rviz2"], "no command named 'rviz2' (did you mean 'run rviz2'?)"),
+        pytest.param(
+            ["rviz2"], "no command named 'rviz2' (did you mean 'run rviz2'?)", marks=pytest.mark.annex("view")
+        ),
         (["wander"], "no command named 'wander' (did you mean 'launch wander'?)"),
         (["gazebo"], "no command named 'gazebo': Gazebo, a simulator in C++; 'robolink run world' simulates a robot"),
         (["ros2", "topic", "list"], "no command named 'ros2': robolink takes the words after it"),

@@ -71,7 +71,14 @@ def test_what_nobody_knows_has_nothing_instead() -> None:
     assert instead_of("ros-gz-sim") == instead_of("ros_gz_bridge", "bridge_node") == PACKAGES["ros_gz*"]
 
 
-@pytest.mark.parametrize("advice", [each for each in ADVICE if "'robolink " in each or "docs/" in each])
+@pytest.mark.parametrize(
+    "advice",
+    [
+        pytest.param(each, marks=pytest.mark.annex("view") if "robolink view" in each else ())
+        for each in ADVICE
+        if "'robolink " in each or "docs/" in each
+    ],
+)
 def test_what_is_advised_is_there(advice: str, capsys: Captured) -> None:
     commands, pages = re.findall(r"'robolink ([^']+)'", advice), re.findall(r"docs/[\w/]+\.md", advice)
     assert commands or pages, "it advises nothing that can be looked for"

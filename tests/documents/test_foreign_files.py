@@ -131,6 +131,14 @@ def test_extensions_of_urdf_that_are_in_use_are_no_mistakes(tmp_path: Path, exte
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         read_urdf(path)
+
+
+@pytest.mark.annex("webots")
+def test_extensions_for_webots_that_are_in_use_are_no_mistakes(tmp_path: Path) -> None:
+    extension = "<webots><device reference='a'><ros><topicName>/x</topicName></ros></device></webots>"
+    path = written(tmp_path, "r.urdf", LINK + '<gazebo reference="base"><sensor/></gazebo>' + extension + "</robot>")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
         read_section(path)
 
 

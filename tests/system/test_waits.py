@@ -203,7 +203,7 @@ COMMANDS = [
     "tf echo a b",
     "tf monitor",
     "top",
-    "view --port 0 --no-browser",
+    pytest.param("view --port 0 --no-browser", marks=pytest.mark.annex("view")),
     "image save /nothing",
     "plot topic /nothing.data --out x.png",
 ]
