@@ -6,7 +6,7 @@ packages add theirs by entry points:
 
     [robolink.programs]
     turtlesim.draw_square = robolink.counterparts.turtlesim.draw_square:DrawSquare
-    image_tools::Cam2Image = robolink.counterparts.image_tools.cam2image:Cam2Image
+    image_tools::Cam2Image = robolink.counterparts.image_tools:Cam2Image
 
 The name is `PACKAGE.EXECUTABLE`, or that of a component's C++ class; the value is `MODULE:NAME` of a function without
 arguments or of a Node class, or `nodes/NAME` for a file of robolink's own folder `nodes/`. Other packages add nodes for
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 ROOMS = ("cli", "counterparts")
 """Rooms of robolink whose folders may have a file `entry_points.txt`."""
+_WORDS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 MOST_NAMED = 10
 """Most executables that an error lists."""
 
@@ -109,7 +111,8 @@ def component(plugin: str) -> NodeSource | None:
     >>> component("nav2_amcl::AmclNode") is None
     True
     """
-    return _source(plugin)
+    found = _source(plugin)
+    return None if found is None else replace(found, name=_WORDS.sub("_", plugin.rpartition("::")[2]).lower())
 
 
 def sources_of(package: str) -> dict[str, NodeSource]:

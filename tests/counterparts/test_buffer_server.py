@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robolink.action import ActionClient
-from robolink.counterparts.tf2_ros.buffer_server import TfBuffer
+from robolink.counterparts.tf2_ros import TfBuffer
 from robolink.interfaces.tf2_msgs.action import LookupTransform
 from robolink.interfaces.tf2_msgs.srv import FrameGraph
 from robolink.testing import System

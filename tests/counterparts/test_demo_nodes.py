@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robolink.counterparts.demo_nodes_py import async_param_client
+from robolink.counterparts.demo_nodes_py import run_parameter_client
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import String
@@ -104,4 +104,4 @@ def test_without_the_blackboard_it_is_one_line(system: System, monkeypatch: pyte
     monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory://nobody")
     monkeypatch.setattr(AsyncParameterClient, "wait_for_services", lambda self, seconds: False)
     with pytest.raises(RobolinkError, match="parameter_blackboard is not there: start it by"):
-        async_param_client.main(["x"])
+        run_parameter_client(["x"])

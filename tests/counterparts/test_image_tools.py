@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robolink.counterparts.image_tools import cam2image, showimage
-from robolink.counterparts.image_tools.burger import BACKGROUND, bounced, render
-from robolink.counterparts.image_tools.cam2image import Cam2Image
-from robolink.counterparts.image_tools.showimage import ShowImage
+from robolink.counterparts import image_tools
+from robolink.counterparts.image_tools import BACKGROUND, Cam2Image, ShowImage, bounced, render
 from robolink.exceptions import RobolinkError
 from robolink.image import ImageError, to_array
 from robolink.interfaces.sensor_msgs.msg import Image
@@ -53,8 +51,7 @@ class OpenCV:
 @pytest.fixture
 def cv2(monkeypatch: pytest.MonkeyPatch) -> OpenCV:
     made = OpenCV()
-    for module in (cam2image, showimage):
-        monkeypatch.setattr(module, "opencv", lambda purpose: made)
+    monkeypatch.setattr(image_tools, "opencv", lambda purpose: made)
     return made
 
 
@@ -118,8 +115,7 @@ def test_without_opencv_it_goes_on(system: System, monkeypatch: pytest.MonkeyPat
     def lacking(purpose: str) -> Any:
         raise ImageError(f"{purpose} needs OpenCV")
 
-    for module in (cam2image, showimage):
-        monkeypatch.setattr(module, "opencv", lacking)
+    monkeypatch.setattr(image_tools, "opencv", lacking)
     system.start(ShowImage)
     system.start(Cam2Image)
     system.expect_log("a window needs OpenCV; 'robolink image show' draws in the terminal", within=0.0)

@@ -6,9 +6,8 @@ from typing import Any
 
 import pytest
 
-from robolink.counterparts.joint_state_publisher.joint_state_publisher import JointStatePublisher
-from robolink.counterparts.joint_state_publisher.joints import FreeJoint, Joints, Settings, dependent_of
-from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher
+from robolink.counterparts.joint_state_publisher import FreeJoint, Joints, JointStatePublisher, Settings, dependent_of
+from robolink.counterparts.robot_state_publisher import RobotStatePublisher
 from robolink.counterparts.urdf import Mimic, parse_urdf
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.sensor_msgs.msg import JointState

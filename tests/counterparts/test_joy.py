@@ -10,12 +10,18 @@ from typing import Any
 
 import pytest
 
-from robolink.counterparts.joy import devices, joy_enumerate_devices, joy_node
-from robolink.counterparts.joy.devices import EVENT, Event, LinuxGamepad, events, found_gamepads
-from robolink.counterparts.joy.game_controller_node import GameControllerNode
-from robolink.counterparts.joy.joy_linux_node import JoyLinuxNode
-from robolink.counterparts.joy.joy_node import JoyNode
-from robolink.counterparts.joy.layout import ControllerState, State, scaled
+from robolink.counterparts.joy import devices, joy_node
+from robolink.counterparts.joy.devices import (
+    EVENT,
+    ControllerState,
+    Event,
+    LinuxGamepad,
+    State,
+    events,
+    found_gamepads,
+    scaled,
+)
+from robolink.counterparts.joy.joy_node import GameControllerNode, JoyLinuxNode, JoyNode
 from robolink.interfaces.sensor_msgs.msg import Joy
 from robolink.testing import System
 
@@ -177,8 +183,8 @@ def test_a_device_is_read_without_waiting(tmp_path: Path, capsys: pytest.Capture
 
 def test_gamepads_are_listed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: Any) -> None:
     (tmp_path / "js0").touch()
-    monkeypatch.setattr(joy_enumerate_devices, "found_gamepads", lambda: devices.found_gamepads(tmp_path))
-    joy_enumerate_devices.main()
+    monkeypatch.setattr(joy_node, "found_gamepads", lambda: devices.found_gamepads(tmp_path))
+    joy_node.list_devices()
     assert capsys.readouterr().out.splitlines()[2:] == [f"                 0 : {tmp_path / 'js0'}"]
 
 

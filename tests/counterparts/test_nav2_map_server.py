@@ -18,7 +18,7 @@ from robolink.counterparts.nav2_map_server.map_files import (
     result_of,
     save,
 )
-from robolink.counterparts.nav2_map_server.map_saver_cli import main as map_saver_cli
+from robolink.counterparts.nav2_map_server.map_saver import run_command
 from robolink.exceptions import DocumentError
 from robolink.interfaces.lifecycle_msgs.msg import Transition
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState
@@ -202,7 +202,7 @@ def test_the_command_saves_and_ends(system: System, file: Path, tmp_path: Path) 
 def test_the_command_fails_where_there_is_no_map(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory://no-map")
     command = ["x", "-f", str(tmp_path / "mine"), "--ros-args", "-p", "save_map_timeout:=0.1"]
-    assert map_saver_cli(command) == 1
+    assert run_command(command) == 1
     assert list(tmp_path.iterdir()) == []
 
 

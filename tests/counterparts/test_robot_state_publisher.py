@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.counterparts.robot_state_publisher.robot_state_publisher import RobotStatePublisher, positions
+from robolink.counterparts.robot_state_publisher import RobotStatePublisher, positions
 from robolink.counterparts.urdf import parse_urdf
 from robolink.exceptions import DocumentError, InvalidParameterValueException, RobolinkError
 from robolink.interfaces.geometry_msgs.msg import TransformStamped

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from robolink.control.keyboard import NoTerminalError
-from robolink.counterparts.teleop_twist_keyboard.teleop_twist_keyboard import TeleopTwistKeyboard
+from robolink.counterparts.teleop_twist_keyboard import TeleopTwistKeyboard
 from robolink.exceptions import InvalidParameterValueException
 from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.testing import System

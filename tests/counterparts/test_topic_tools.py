@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from robolink.counterparts.topic_tools import demux, mux, throttle
-from robolink.counterparts.topic_tools.topic_tool import numbered
+from robolink.counterparts.topic_tools.mux import demux_parameters, mux_parameters
+from robolink.counterparts.topic_tools.topic_tool import numbered, throttle_parameters
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import Quaternion
 from robolink.interfaces.sensor_msgs.msg import Imu, LaserScan
@@ -209,14 +209,14 @@ def test_other_arguments_are_one_line(system: System, tool: str, args: list[str]
 
 
 def test_arguments_are_parameters() -> None:
-    assert throttle.parameters(["bytes", "a", "1024", "0.5"]) == {
+    assert throttle_parameters(["bytes", "a", "1024", "0.5"]) == {
         "throttle_type": "bytes",
         "input_topic": "a",
         "bytes_per_sec": 1024,
         "window": 0.5,
     }
-    assert mux.parameters(["out", "a", "b"]) == {"output_topic": "out", "input_topics": ["a", "b"]}
+    assert mux_parameters(["out", "a", "b"]) == {"output_topic": "out", "input_topics": ["a", "b"]}
     assert numbered([], "usage", ("a", str)) == {}
-    for module in (mux, demux):
+    for parameters in (mux_parameters, demux_parameters):
         with pytest.raises(RobolinkError, match="1 argument: expected"):
-            module.parameters(["a"])
+            parameters(["a"])

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robolink.counterparts.urdf import parse_urdf
-from robolink.counterparts.xacro import expanded, xacro
+from robolink.counterparts.xacro import expanded, main
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.ros.launch.bases import LaunchContext
 from robolink.launch.ros.launch.substitutions import Command, SubstitutionFailure
@@ -63,10 +63,10 @@ def test_files_of_packages_are_found(folder: Path) -> None:
 
 def test_the_command_prints_or_writes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, output = written(folder, WHEELS), folder / "bot.urdf"
-    xacro.main(["xacro", file, "--ros-args", "--log-level", "info"])
+    main(["xacro", file, "--ros-args", "--log-level", "info"])
     text = capsys.readouterr().out
     assert text.startswith("<?xml")
-    xacro.main(["xacro", "-o", str(output), file])
+    main(["xacro", "-o", str(output), file])
     assert output.read_text() == text
     assert capsys.readouterr().out == ""
 

@@ -1,7 +1,4 @@
-"""Publish the state of a gamepad on /joy.
-
-robolink run joy joy_node --ros-args -p device_id:=0
-"""
+"""Nodes that publish a gamepad's state, in each of ROS's orders, and the list of gamepads."""
 
 from __future__ import annotations
 
@@ -10,12 +7,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from robolink.counterparts.joy.devices import Gamepad, LinuxGamepad, found_gamepads, is_supported, named
-from robolink.counterparts.joy.layout import State
+from robolink.counterparts.joy.devices import (
+    ControllerState,
+    Gamepad,
+    LinuxGamepad,
+    State,
+    found_gamepads,
+    is_supported,
+    named,
+)
 from robolink.counterparts.program import spin_program
 from robolink.interfaces.sensor_msgs.msg import Joy
 from robolink.node import Node
 from robolink.parameters.descriptors import described
+from robolink.system.terminal import shown
 
 LOOK = 0.005
 """Time between two looks at the gamepad, in seconds."""
@@ -135,10 +140,54 @@ class JoyNode(Node):
         super().destroy_node()
 
 
-def main(args: list[str] | None = None) -> None:
+def run_joy(args: list[str] | None = None) -> None:
     """Publish the state of a gamepad until Ctrl-C."""
     spin_program(lambda words: JoyNode(), args)
 
 
-if __name__ == "__main__":
-    main()
+class GameControllerNode(JoyNode):
+    """A node that publishes six axes and 21 buttons. `options` are those of `JoyNode`."""
+
+    made_state = ControllerState
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("game_controller_node", **options)
+
+
+def run_game_controller(args: list[str] | None = None) -> None:
+    """Publish the state of a gamepad until Ctrl-C."""
+    spin_program(lambda words: GameControllerNode(), args)
+
+
+class JoyLinuxNode(JoyNode):
+    """A node that publishes the state of the gamepad `dev`. `options` are those of `JoyNode`."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__("joy_node", **options)
+
+    def declare_device(self) -> None:
+        """Declare the parameters that say which gamepad it is."""
+        self._device = self._declare("dev", "/dev/input/js0", "device of the gamepad")
+        self._id = -1
+        self._name = self._declare("dev_name", "", "name of the gamepad, which goes before its device")
+        self._declare("coalesce_interval", 0.001, "of no effect: changes within 5 ms are one message")
+        self._declare("default_trig_val", False, "of no effect: the kernel tells where the triggers are")
+
+    def path(self) -> Path | None:
+        """Return the device, if it is there."""
+        if self._name:
+            return next((each for each in found_gamepads().values() if named(each) == self._name), None)
+        path = Path(self._device)
+        return path if path.exists() else None
+
+
+def run_joy_linux(args: list[str] | None = None) -> None:
+    """Publish the state of a gamepad until Ctrl-C."""
+    spin_program(lambda words: JoyLinuxNode(), args)
+
+
+def list_devices() -> None:
+    """Print a line for each gamepad."""
+    rows = [f"{number:>18} : {shown(named(path))}" for number, path in found_gamepads().items()]
+    lines = ["Joystick Device ID : Joystick Device Name", "-" * 41, *rows]
+    sys.stdout.write("\n".join(lines) + "\n")

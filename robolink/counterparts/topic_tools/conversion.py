@@ -1,4 +1,4 @@
-"""Base of the nodes that make other messages of what they hear, by expressions of Python on the message `m`.
+"""Nodes that make other messages of what they hear, by expressions of Python on the message `m`.
 
 The expressions are the user's own text, in the user's own shell, as those of `robolink topic echo --filter`.
 """
@@ -6,13 +6,18 @@ The expressions are the user's own text, in the user's own shell, as those of `r
 from __future__ import annotations
 
 import argparse
+import contextlib
+import functools
+import importlib
 import os
 from collections.abc import Callable
 from types import CodeType
 from typing import Any, NamedTuple
 
-from robolink.counterparts.program import UsageError
+from robolink.companions.rosidl_runtime import set_message_fields
+from robolink.counterparts.program import UsageError, spin_program
 from robolink.counterparts.topic_tools.topic_tool import Source, TopicTool
+from robolink.documents import yamltext
 from robolink.interfaces import find
 from robolink.serialization import deserialize_message
 
@@ -81,3 +86,87 @@ def parser_of(program: str) -> argparse.ArgumentParser:
         "--wait-for-start", action="store_true", help="of no effect: it waits for the input in any case"
     )
     return parser
+
+
+def run_transform(args: list[str] | None = None) -> None:
+    """Convert messages until Ctrl-C."""
+    spin_program(transform, args)
+
+
+def transform(words: list[str]) -> Conversion:
+    """Make the node of a command line."""
+    parser = parser_of("transform")
+    parser.add_argument("expression", nargs="?", default="m", help="Python's expression on the message m")
+    parser.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"], help="modules of it")
+    parser.add_argument("--field", default="", help="field that m is, such as orientation.x")
+    asked = parser.parse_args(words)
+    code, names = compiled(asked.expression), {each: _module(each) for each in asked.modules}
+    path = [each for each in asked.field.split(".") if each]
+
+    def convert(message: Any, kind: type[Any]) -> Any:
+        m = functools.reduce(getattr, path, message)
+        return eval(code, {**names, "m": m})  # noqa: S307 - the user's own text, in their own shell
+
+    return Conversion("transform", Topics(asked.input, asked.output_topic, asked.output_type), convert)
+
+
+def _module(name: str) -> Any:
+    from robolink import compat  # late: its import takes names already
+
+    compat.activate()
+    try:
+        module = importlib.import_module(name)
+    except ImportError as error:
+        raise UsageError(f"--import {name}: {error}") from None
+    with contextlib.suppress(ImportError):  # a package of messages, whose `msg` an expression needs
+        importlib.import_module(f"{name}.msg")
+    return module
+
+
+def run_relay_field(args: list[str] | None = None) -> None:
+    """Convert messages until Ctrl-C."""
+    spin_program(relay_field, args)
+
+
+def relay_field(words: list[str]) -> Conversion:
+    """Make the node of a command line."""
+    parser = parser_of("relay_field")
+    parser.add_argument("expression", help="fields of the output as YAML, with expressions on the message m")
+    asked = parser.parse_args(words)
+    fields = prepared(yamltext.plain(yamltext.compose(asked.expression, "EXPRESSION"), "EXPRESSION"))
+    if not isinstance(fields, dict):
+        raise UsageError("expected fields such as '{frame_id: m.data}'")
+
+    def convert(message: Any, kind: type[Any]) -> Any:
+        made = kind()
+        now = node.get_clock().now().to_msg()
+        for put in set_message_fields(made, filled(fields, message), expand_header_auto=True, expand_time_now=True):
+            put(now)
+        return made
+
+    node = Conversion("relay_field", Topics(asked.input, asked.output_topic, asked.output_type), convert)
+    return node
+
+
+def prepared(value: Any) -> Any:
+    """Return data in which texts that are expressions on `m` are code; others stay what they are."""
+    if isinstance(value, dict):
+        return {key: prepared(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [prepared(each) for each in value]
+    try:
+        code = compiled(value) if isinstance(value, str) else value
+    except UsageError:
+        return value
+    return code if not isinstance(code, CodeType) or "m" in code.co_names else value
+
+
+def filled(value: Any, message: Any) -> Any:
+    """Return data with the values of its expressions."""
+    if isinstance(value, dict):
+        return {key: filled(each, message) for key, each in value.items()}
+    if isinstance(value, list):
+        return [filled(each, message) for each in value]
+    if isinstance(value, CodeType):
+        return eval(value, {"m": message})  # noqa: S307 - the user's own text, in their own shell
+    return value

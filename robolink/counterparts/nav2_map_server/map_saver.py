@@ -1,21 +1,21 @@
-"""Save maps of topics in files on request.
-
-robolink run nav2_map_server map_saver_server
-"""
+"""Map saver: a node that saves maps on request, and a command that saves one and ends."""
 
 from __future__ import annotations
 
+import argparse
 from typing import Any
 
+import robolink
 from robolink.callback_groups import ReentrantCallbackGroup
-from robolink.counterparts.nav2_map_server.map_files import MapSaveError, Saving, checked, path_of, save
-from robolink.counterparts.program import spin_program
+from robolink.counterparts.nav2_map_server.map_files import FORMATS, MODES, MapSaveError, Saving, checked, path_of, save
+from robolink.counterparts.program import own_words, spin_program
 from robolink.interfaces.nav2_msgs.srv import SaveMap
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from robolink.node import Node
 from robolink.parameters.descriptors import described
 from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.system import clocks
 from robolink.task import Future
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -125,10 +125,38 @@ async def _next_map(node: Node, topic: str) -> OccupancyGrid | None:
         node.destroy_subscription(subscription)
 
 
-def main(args: list[str] | None = None) -> None:
+def run_server(args: list[str] | None = None) -> None:
     """Save maps on request until Ctrl-C."""
     spin_program(lambda words: MapSaver(), args)
 
 
-if __name__ == "__main__":
-    main()
+def run_command(args: list[str] | None = None) -> int:
+    """Save a map; return the exit code, 1 if there was none to save."""
+    words = _parser().parse_args(own_words(args))
+    with robolink.init(args=args):
+        node = Node("map_saver")
+        declare_saving(node)
+        defaults = saving_of(node, words.f or f"map_{int(clocks.time_of_day())}")
+        saving = Saving(
+            defaults.path,
+            words.fmt,
+            words.mode,
+            defaults.occupied if words.occ is None else words.occ,
+            defaults.free if words.free is None else words.free,
+        )
+        executor = robolink.get_global_executor()
+        executor.add_node(node)
+        task = executor.create_task(save_topic(node, words.t, saving))
+        executor.spin_until_future_complete(task)
+        return 0 if task.done() and task.result() else 1
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("map_saver_cli")
+    parser.add_argument("-f", metavar="MAP", default="", help="files, without their ending")
+    parser.add_argument("-t", metavar="TOPIC", default="map", help="topic of the map")
+    parser.add_argument("--occ", type=float, help="occupancy from which a cell is occupied, from 0 to 1")
+    parser.add_argument("--free", type=float, help="occupancy up to which a cell is free, from 0 to 1")
+    parser.add_argument("--fmt", choices=FORMATS, default="", help="format of the image")
+    parser.add_argument("--mode", choices=MODES, default="trinary", help="what cells mean in the image")
+    return parser
