@@ -16,6 +16,12 @@ from robolink.impl.logging_severity import (
     get_logging_severity_from_string,
 )
 
+WIDE_PARAMETER = "--wide-param"
+"""robolink's own flag for a parameter that was given to more nodes than this one, so that it may lack it.
+
+A launcher gives a value of a section such as `/**` by it, since rcl's `-p` takes no patterns of names.
+"""
+
 
 class InvalidROSArgsError(RCLError, ValueError):
     """A ROS argument cannot be read; the text names it and says what was expected."""
@@ -151,6 +157,10 @@ class _Parser:
     def remap(self, value: str) -> None:
         self.remap_rules.append(parse_remap_rule(value))
 
+    def wide_parameter(self, value: str) -> None:
+        self.parameter(value)
+        self.overrides[-1] = self.overrides[-1]._replace(is_typed=False)
+
     def parameter(self, value: str) -> None:
         from robolink.arguments.parameter_file import parse_parameter_value
 
@@ -191,6 +201,7 @@ _FLAGS = {
     "--remap": _REMAP,
     "-p": _PARAM,
     "--param": _PARAM,
+    WIDE_PARAMETER: (_Parser.wide_parameter, "name:=value"),
     "--params-file": (_Parser.parameter_file, "the path of a file"),
     "--log-level": (_Parser.log_level, "LEVEL or logger:=LEVEL"),
     "-e": _ENCLAVE,
@@ -203,4 +214,4 @@ _SWITCHES = {
     for verb in ("enable", "disable")
     for sink in ("stdout", "rosout", "external-lib")
 }
-_KNOWN = [*_FLAGS, *_SWITCHES]
+_KNOWN = [*(each for each in _FLAGS if each != WIDE_PARAMETER), *_SWITCHES]

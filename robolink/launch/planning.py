@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from robolink.arguments.command_line import WIDE_PARAMETER
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.entry import Entry, NodeToStart, Respawn
@@ -243,18 +244,18 @@ def _circle_error(circle: list[str], waits: Mapping[str, Mapping[str, Entry]]) -
 def arguments(entry: Entry) -> Iterator[str]:
     """Yield the arguments of a node's program: its own, then those behind `--ros-args`, if there are any."""
     yield from entry.node.args
-    for_ros = [*_for_ros(entry.node)]
+    for_ros = [*_for_ros(entry.node, entry.wide)]
     if for_ros:  # a program that counts its words gets no more than it is given
         yield from ("--ros-args", *for_ros)
 
 
-def _for_ros(node: NodeToStart) -> Iterator[str]:
+def _for_ros(node: NodeToStart, wide: Collection[str]) -> Iterator[str]:
     if node.name:
         yield from ("-r", f"__node:={node.name}")
     if node.namespace:
         yield from ("-r", f"__ns:={node.namespace}")
     for name, value in node.parameters.items():
-        yield from ("-p", f"{name}:={spell(value)}")
+        yield from (WIDE_PARAMETER if name in wide else "-p", f"{name}:={spell(value)}")
     for match, replacement in node.remappings.items():
         yield from ("-r", f"{match}:={replacement}")
     if node.log_level:

@@ -124,7 +124,8 @@ def _with_parameter(entries: list[Entry], place: str, value: Any) -> list[Entry]
 
 def _changed(entry: Entry, parameter: str, value: Any) -> Entry:
     parameters = {**entry.node.parameters, parameter: value}
-    return replace(entry, node=msgspec.structs.replace(entry.node, parameters=parameters))
+    node = msgspec.structs.replace(entry.node, parameters=parameters)
+    return replace(entry, node=node, wide=entry.wide - {parameter})
 
 
 @contextmanager

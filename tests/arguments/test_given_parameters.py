@@ -66,6 +66,11 @@ def test_what_is_like_nothing_is_told_at_the_end(log_lines: list[Record]) -> Non
     ]
 
 
+def test_what_another_node_may_declare_is_not_told(log_lines: list[Record]) -> None:
+    run("--wide-param", "colour:=red", "--wide-param", "spede:=1.0")
+    assert told(log_lines) == []
+
+
 def test_what_is_declared_late_is_not_told(log_lines: list[Record]) -> None:
     run("-p", "colour:=1", declares="colour")
     assert told(log_lines) == []

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import msgspec
 
+from robolink.arguments.command_line import WIDE_PARAMETER
 from robolink.cli.running_nodes import runner
 from robolink.context import Context
 from robolink.exceptions import (
@@ -189,11 +190,11 @@ def _is_open(node: Node) -> bool:
 def _without(args: Sequence[str], name: str) -> list[str]:
     """Return the arguments without the parameter of that name."""
     kept: list[str] = []
-    rest = iter(args)
+    rest, flags = iter(args), ("-p", WIDE_PARAMETER)
     for each in rest:
-        value = next(rest, "") if each == "-p" else ""
+        value = next(rest, "") if each in flags else ""
         if not value.startswith(f"{name}:="):
-            kept += [each, value] if each == "-p" else [each]
+            kept += [each, value] if each in flags else [each]
     return kept
 
 

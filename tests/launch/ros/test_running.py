@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from robolink.cli.main import main
+from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import String
 from robolink.testing import System
 from tests.support.launched_systems import said
@@ -86,6 +87,21 @@ def test_a_system_in_virtual_time(package: Path, capsys: pytest.CaptureFixture[s
 def test_a_system_under_test(package: Path, system: System) -> None:
     system.launch(write(package, SYSTEM), arguments={"word": "hey"})
     assert system.expect("/r/chatter", type=String).data == "hey"
+
+
+def test_parameters_for_every_node_are_not_missed_by_those_that_lack_them(
+    package: Path, log_lines: list[Record]
+) -> None:
+    (package / "config" / "all.yaml").write_text("/**: {ros__parameters: {word: hey, max_speed: 1.0}}\n")
+    node = """
+    Node(package="bot", executable="talker", name="{}", parameters=[[FindPackageShare("bot"), "/config/all.yaml"], {}]),
+    """
+    with System() as system:
+        system.launch(write(package, node.format("a", {}) + node.format("b", {"colour": 1.0})))
+        assert system.expect("/chatter", type=String).data == "hey"
+    assert [each.message for each in log_lines if "was given" in each.message] == [
+        "parameter 'colour' was given, but no node declared it"
+    ]
 
 
 @pytest.mark.processes
