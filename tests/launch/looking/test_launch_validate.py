@@ -139,10 +139,10 @@ def test_a_node_that_is_never_made_is_seen_as_far_as_it_was(home: Path) -> None:
 @pytest.mark.processes
 @pytest.mark.skipif(sys.platform == "win32", reason="no signal holds a process up there")
 def test_a_process_that_is_held_up_is_killed(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.launch.looking.look._GRACE", 3.0)
+    monkeypatch.setattr("robolink.launch.looking.look._GRACE", 0.5)
     stop = f"{NODE})\n        import os, signal\n        os.kill(os.getpid(), signal.SIGSTOP)\n"
     (home / "nodes" / "stops.py").write_text(stop)
-    [look] = looked(home, "stops", patience=0.5)
+    [look] = looked(home, "stops", patience=3.0)  # within which it stops itself
     assert look.error == "it holds up its whole process when it is made"
 
 
