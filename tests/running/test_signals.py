@@ -232,7 +232,7 @@ LONELY = """
 """
 
 IN_A_CALLBACK = """
-    from robolink.callback_groups import ReentrantCallbackGroup
+    from robolink.callback_groups import MutuallyExclusiveCallbackGroup
     from robolink.executors import MultiThreadedExecutor
 
     def sleep():
@@ -243,7 +243,7 @@ IN_A_CALLBACK = """
     node = Talker()
     rate = node.create_rate(100)
     for _ in range(2):
-        node.create_timer(0.01, sleep, callback_group=ReentrantCallbackGroup())
+        node.create_timer(0.01, sleep, callback_group=MutuallyExclusiveCallbackGroup())  # sleeps once: threads are left
     executor = MultiThreadedExecutor(4)
     executor.add_node(node)
     try:

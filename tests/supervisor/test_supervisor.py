@@ -109,7 +109,9 @@ def test_a_process_that_ignores_the_interrupt_is_terminated(tmp_path: Path) -> N
     code, lines = run(waiting, stubborn, patience=1.0)
     assert code == 4
     said = ["a ended with exit code 4", "still running after 1 s: b", "summary: a ended with exit code 4"]
-    assert lines[-3:] == [f"[launch] {each}" for each in said]
+    told = [line for line in lines if line.startswith("[launch]")]
+    # A busy machine may take a second to end it, and then it is said to be still running once more.
+    assert list(dict.fromkeys(told)) == [f"[launch] {each}" for each in said]
 
 
 class FakeChild:
