@@ -1,19 +1,41 @@
 """Exceptions of robolink, the common ones: one root, each also a subclass of the stdlib class one would catch.
 
 RobolinkError
-├─ DocumentError (ValueError)            a YAML file or text that is not what it should be
-├─ MessageError (ValueError)             a message type or value
-│   ├─ DefinitionError                   the text of a .msg, .srv or .action file
-│   ├─ EncodeError (TypeError)           a field that does not fit its type
-│   └─ DecodeError                       bytes that are no message of this type
-├─ WireError (ValueError)                a key, token or attachment that is not rmw_zenoh's
-├─ TransportError (ConnectionError)      the network below
-│   ├─ TransportClosedError              used after close
-│   ├─ SecurityError (PermissionError)   what keys or rights do not allow
-│   └─ OverwrittenError                  a message in shared memory that its sender has overwritten
-├─ NotFoundError (LookupError)           a node, config, type or topic that is not there
-│   └─ AmbiguousNameError                several that a short name may mean
-└─ rclpy's own, by their own names
+├─ DocumentError (ValueError)                    a YAML file or text that is not what it should be
+├─ MessageError (ValueError)                     a message type or value
+│   ├─ DefinitionError                           the text of a .msg, .srv or .action file
+│   ├─ EncodeError (TypeError)                   a field that does not fit its type
+│   │   └─ OutOfRangeError (OverflowError)       a number that its type cannot hold
+│   └─ DecodeError                               bytes that are not a message of this type
+├─ WireError (ValueError)                        a key, token or attachment that is not rmw_zenoh's
+├─ TransportError (ConnectionError)              the network below
+│   ├─ TransportClosedError                      used after close
+│   ├─ SecurityError (PermissionError)           what keys or rights do not allow
+│   ├─ OverwrittenError                          a message in shared memory that its sender has overwritten
+│   └─ SessionReplacedError                      a call whose session was replaced meanwhile
+├─ NotFoundError (LookupError)                   a node, config, type or topic that is not there
+│   └─ AmbiguousNameError                        several that a short name may mean
+│
+│  rclpy's own, by their own names:
+├─ NotInitializedException (RuntimeError)        no context, or one that is shut down
+├─ NoTypeSupportImportedException (TypeError)    a class that is not a message type
+├─ InvalidHandle (RuntimeError)                  an entity that was destroyed
+├─ RCLError (RuntimeError)                       what rclpy's C extension raises
+│   └─ NodeNameNonExistentError (LookupError)    a node that the graph does not have
+├─ NameValidationException (ValueError)          a name with a character or a form that ROS does not allow
+│   └─ InvalidNamespaceException, InvalidNodeNameException, InvalidTopicNameException, InvalidServiceNameException
+├─ ParameterException                            a parameter of a node
+│   ├─ ParameterNotDeclaredException (LookupError)
+│   ├─ ParameterAlreadyDeclaredException
+│   ├─ InvalidParameterException (ValueError)
+│   ├─ InvalidParameterTypeException (TypeError)
+│   ├─ InvalidParameterValueException (ValueError)
+│   ├─ ParameterImmutableException
+│   └─ ParameterUninitializedException (ValueError)
+├─ ServiceError (RuntimeError)                   a call without an answer: no server, or one that went away
+└─ ExternalShutdownException                     the context was shut down while somebody spins
+    ├─ InterruptedByUser (KeyboardInterrupt)     by Ctrl-C
+    └─ ROSInterruptException
 """
 
 from __future__ import annotations
@@ -75,7 +97,7 @@ class TransportClosedError(TransportError):
 
 
 class SecurityError(TransportError, PermissionError):
-    """Keys, certificates or rights do not allow it; the text names the enclave, what was asked for, and the rule."""
+    """Keys, certificates or rights do not allow it; the text names the enclave, the request, and the rule."""
 
 
 class OverwrittenError(TransportError):
@@ -96,16 +118,16 @@ class SessionReplacedError(TransportError):
     def __init__(self) -> None:
         super().__init__(
             "this machine's address or keys changed while the call was under way: its answer is lost, though the server"
-            " may have done what was asked; call again if that does no harm"
+            " may have done it; call again if that does no harm"
         )
 
 
 class NotFoundError(RobolinkError, LookupError):
-    """Something was asked for by name and is not there; the text names what is near.
+    """Something was requested by name and is not there; the text names what is near.
 
     Args:
         kind: Word for what it is, such as "node".
-        name: Name that was asked for.
+        name: Name that was requested.
         known: Names that there are.
         where: Place that was searched; '' names none.
     """

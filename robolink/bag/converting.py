@@ -72,8 +72,8 @@ def convert(
     with contextlib.ExitStack() as stack:
         targets = [_Target(each, topics.values(), inputs, stack) for each in outputs]
         done = 0
-        wanted = {name for each in targets for name in each.numbers}
-        for message in merged_messages(inputs, wanted):
+        selected = {name for each in targets for name in each.numbers}
+        for message in merged_messages(inputs, selected):
             for target in targets:
                 target.take(message)
             done += 1
@@ -124,11 +124,11 @@ class _Target:
 _END, _PART = 32 << 20, 64 << 10
 """Bytes at the end of a file that are looked at for a hole, and the smallest hole that counts."""
 
-Told = Callable[[str], object]
+OnProgress = Callable[[str], object]
 """Function that is called with a line about what was done."""
 
 
-def reindex(path: str | Path, tell: Told = lambda line: None) -> BagMetadata:
+def reindex(path: str | Path, tell: OnProgress = lambda line: None) -> BagMetadata:
     """Mend a bag in its place, and return its metadata.
 
     What metadata.yaml alone knows (custom data, the distribution, how the files are compressed) is kept if it can be
@@ -156,7 +156,7 @@ def reindex(path: str | Path, tell: Told = lambda line: None) -> BagMetadata:
     return metadata
 
 
-def _described(folder: Path, tell: Told) -> BagMetadata:
+def _described(folder: Path, tell: OnProgress) -> BagMetadata:
     """Return metadata of the files that are in a folder, whatever its metadata.yaml names."""
     old = None
     with contextlib.suppress(BagError):
@@ -173,7 +173,7 @@ def _described(folder: Path, tell: Told) -> BagMetadata:
     return metadata
 
 
-def _mend(path: Path, tell: Told) -> None:
+def _mend(path: Path, tell: OnProgress) -> None:
     try:
         with path.open("rb") as file:
             head = file.read(16)
@@ -185,7 +185,7 @@ def _mend(path: Path, tell: Told) -> None:
         _mend_sqlite(path, tell)
 
 
-def _mend_mcap(path: Path, tell: Told) -> None:
+def _mend_mcap(path: Path, tell: OnProgress) -> None:
     """Make an MCAP file whole, and give back the room that a killed recorder had reserved in it."""
     try:
         with mcap.open_mcap(path) as reader:
@@ -208,7 +208,7 @@ def _has_hole(path: Path) -> bool:
         return any(not any(part) for part in iter(lambda: file.read(_PART), b""))
 
 
-def _mend_sqlite(path: Path, tell: Told) -> None:
+def _mend_sqlite(path: Path, tell: OnProgress) -> None:
     """Let sqlite3 finish what the log of a killed writer holds, and make a damaged file whole from what can be read."""
     if any(path.with_name(path.name + each).exists() for each in ("-wal", "-journal")):
         with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(path)) as database:
@@ -227,14 +227,14 @@ def _mend_sqlite(path: Path, tell: Told) -> None:
         _copy(reader, partial)
         for problem in reader.problems:
             tell(problem)
-    kept = path.with_name(f"{path.name}.damaged")
-    path.replace(kept)
+    saved = path.with_name(f"{path.name}.damaged")
+    path.replace(saved)
     partial.replace(path)
-    tell(f"{path} is whole again; the damaged file is {kept.name}")
+    tell(f"{path} is whole again; the damaged file is {saved.name}")
 
 
 def _copy(reader: SqliteReader, target: Path) -> None:
-    """Write what can be read of a file into another."""
+    """Write the readable messages of a file into another."""
     writer = SqliteWriter(target)
     try:
         numbers = {each.name: writer.add_topic(each) for each in reader.topics}

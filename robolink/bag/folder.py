@@ -24,7 +24,7 @@ class Contents(NamedTuple):
 
 
 def contents(path: Path, *, ignores_metadata: bool = False) -> Contents:
-    """Return what a bag consists of.
+    """Return the metadata and the files of a bag.
 
     Args:
         path: The bag's folder, its metadata.yaml, or one storage file.

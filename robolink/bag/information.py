@@ -83,7 +83,7 @@ def services_of(metadata: BagMetadata) -> list[Service]:
 
 
 def info_text(metadata: BagMetadata, sort: str = "name", details: Details | None = None) -> str:
-    """Return what `ros2 bag info` prints; with `details`, what it prints with -v. It ends with an empty line.
+    """Return the text that `ros2 bag info` prints; with `details`, that of -v. It ends with an empty line.
 
     Raises BagError for an unknown `sort`.
     """

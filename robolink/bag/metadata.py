@@ -132,7 +132,7 @@ def parse_metadata(text: str, name: str = FILE_NAME, *, tells: bool = False) -> 
         tells: True to give a `FileWarning` for keys that are not known, and are ignored, as by rosbag2.
 
     Raises:
-        BagError: for a text that is no metadata.
+        BagError: for a text that is not metadata.
     """
     try:
         data = texts(compose(text, name), name)

@@ -94,10 +94,10 @@ class Bag:
             end: Log time before which messages must be.
             reverse: True for the latest first.
         """
-        wanted = None if topics is None else frozenset(topics)
+        selected = None if topics is None else frozenset(topics)
         filled = [each for each in self._files if each.has_between(start, end)]
         for group in _overlapping(filled, reverse=reverse):
-            streams = [self._of_file(each, wanted, start, end, reverse=reverse) for each in group]
+            streams = [self._of_file(each, selected, start, end, reverse=reverse) for each in group]
             if len(streams) == 1:
                 yield from streams[0]
             else:

@@ -85,9 +85,11 @@ class Selection(NamedTuple):
     def _takes_named(
         self, name: str, everything: bool, names: tuple[str, ...], excluded: tuple[str, ...], typed: bool = False
     ) -> bool:
-        wanted = everything or typed or name in names or bool(self.regex and _compiled(self.regex).search(name))
+        selected = everything or typed or name in names or bool(self.regex and _compiled(self.regex).search(name))
         return (
-            wanted and name not in excluded and not (self.exclude_regex and _compiled(self.exclude_regex).search(name))
+            selected
+            and name not in excluded
+            and not (self.exclude_regex and _compiled(self.exclude_regex).search(name))
         )
 
 

@@ -220,7 +220,7 @@ _OF_WORKSPACE = _WorkspaceTypes()
 
 
 def _explain(error: Exception) -> int:
-    """Print what is wrong with the usage, or the whole help of a noun without a verb; return the exit code."""
+    """Print the error of the usage, or the whole help of a noun without a verb; return the exit code."""
     if os.environ.get(COMPLETION):
         return 1
     if type(error).__name__ == "NoArgsIsHelpError":

@@ -61,44 +61,44 @@ def create(
         return
     user = maintainer_name or _user()
     email = maintainer_email or f"{user}@todo.todo"
-    wanted = NewPackage(
+    requested = NewPackage(
         package_name, build_type, int(package_format), description, license_, user, email,
         tuple(dependencies or ()), node_name, library_name,
     )  # fmt: skip
-    made = new_package(wanted, destination.absolute())
-    _tell_of(wanted, destination, made.files)
+    made = new_package(requested, destination.absolute())
+    _tell_of(requested, destination, made.files)
 
 
-def _tell_of(wanted: NewPackage, destination: Path, files: list[str]) -> None:
+def _tell_of(requested: NewPackage, destination: Path, files: list[str]) -> None:
     say("going to create a new package")
     facts = {
-        "package name": wanted.name,
+        "package name": requested.name,
         "destination directory": destination.absolute(),
-        "package format": wanted.package_format,
+        "package format": requested.package_format,
         "version": "0.0.0",
-        "description": wanted.description,
-        "maintainer": [f"{wanted.maintainer} <{wanted.email}>"],
-        "licenses": [wanted.license],
-        "build type": wanted.build_type,
-        "dependencies": list(wanted.dependencies),
-        **({"node_name": wanted.node} if wanted.node else {}),
-        **({"library_name": wanted.library} if wanted.library else {}),
+        "description": requested.description,
+        "maintainer": [f"{requested.maintainer} <{requested.email}>"],
+        "licenses": [requested.license],
+        "build type": requested.build_type,
+        "dependencies": list(requested.dependencies),
+        **({"node_name": requested.node} if requested.node else {}),
+        **({"library_name": requested.library} if requested.library else {}),
     }
     for name, value in facts.items():
         say(f"{name}: {value}")
-    say(f"creating folder ./{wanted.name}")
+    say(f"creating folder ./{requested.name}")
     for each in files:
-        say(f"creating ./{wanted.name}/{each}")
-    if wanted.license.startswith("TODO"):
+        say(f"creating ./{requested.name}/{each}")
+    if requested.license.startswith("TODO"):
         tell("say under which licence others may use it: <license> in package.xml, and a file LICENSE")
     elif "LICENSE" not in files:
         from robolink.scaffold import known_licenses
 
         known = known_licenses()
-        hint = nearest(wanted.license, known) or f": there is {', '.join(known)}"
-        tell(f"no file LICENSE was made: robolink has no text of '{wanted.license}'{hint}")
-    if wanted.node:
-        say(f"\nnext:\n  robolink run {wanted.name} {wanted.node}")
+        hint = nearest(requested.license, known) or f": there is {', '.join(known)}"
+        tell(f"no file LICENSE was made: robolink has no text of '{requested.license}'{hint}")
+    if requested.node:
+        say(f"\nnext:\n  robolink run {requested.name} {requested.node}")
 
 
 def _user() -> str:

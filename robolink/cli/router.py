@@ -57,7 +57,7 @@ def router(
 
 
 def opening(listens: Sequence[str], connects: Sequence[str], enclave: str = "") -> list[str]:
-    """Return what a router says first: where it listens, and who can reach it there.
+    """Return the first lines of a router: where it listens, and who can reach it there.
 
     Args:
         listens: Endpoints on which it listens.

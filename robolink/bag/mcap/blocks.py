@@ -143,7 +143,7 @@ def load(source: Source, block: Block) -> Buffer:
     opcode, length = _opening.unpack_from(content)
     if opcode != CHUNK or length != block.length - OPENING:
         raise Malformed("there is no chunk where the index has one")
-    view = memoryview(content)  # its parts are no copies
+    view = memoryview(content)  # its parts are not copied
     head = read_chunk_head(view[OPENING:])
     if (head.first, head.last, head.size, head.compression) != (*block[2:4], block.size, block.compression):
         raise Malformed("it is another chunk than the index has there")
@@ -167,7 +167,7 @@ def _has_more_records(data: Buffer, most: int) -> bool:
     return False
 
 
-def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> list[Message]:
+def messages_of(data: Buffer, selected: Container[int], low: int, high: int) -> list[Message]:
     """Return the messages among records, of these channels and with a log time from `low` to before `high` (ns)."""
     found: list[Message] = []
     view = memoryview(data)
@@ -178,7 +178,7 @@ def messages_of(data: Buffer, wanted: Container[int], low: int, high: int) -> li
         stop = at + OPENING + length
         if stop > end or not opcode:
             break
-        if opcode == MESSAGE and channel in wanted and low <= log_time < high and length >= MESSAGE_HEAD:
+        if opcode == MESSAGE and channel in selected and low <= log_time < high and length >= MESSAGE_HEAD:
             take(new(Message, (channel, sequence, log_time, publish_time, view[at + 31 : stop])))
         at = stop
     return found

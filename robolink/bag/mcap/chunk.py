@@ -82,7 +82,7 @@ def unpack(name: str, packed: Buffer, size: int) -> Buffer:
 
 
 def unpack_partly(name: str, packed: bytes) -> bytes:
-    """Return what there is of a chunk's data whose end is missing. Raises MissingCompressionError."""
+    """Return the readable part of a chunk's data whose end is missing. Raises MissingCompressionError."""
     if name == "zstd":
         decompressor = _module(name).ZstdDecompressor()
     elif name == "lz4":

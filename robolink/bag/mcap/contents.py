@@ -114,7 +114,7 @@ class Contents:
         self._add(Waiting(content, ATTACHMENT_INDEX, lambda at: attachment_index_record(at, length, size, bare)))
 
     def pack(self, at: int, data: ChunkData, entries: Mapping[int, list[int]]) -> Packed:
-        """Return what waits, and a chunk of messages behind it, as they are at a place of the file.
+        """Return the records that wait, and a chunk of messages behind them, as they are at a place of the file.
 
         Args:
             at: Place in the file.

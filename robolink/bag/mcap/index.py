@@ -49,7 +49,7 @@ LARGEST_SUMMARY = 256 << 20
 
 
 def read_index(source: Source) -> Catalog:
-    """Return what a file's summary tells of it. Raises Malformed if it has none, or one that cannot be relied on."""
+    """Return the catalogue of a summary. Raises Malformed if the file has none, or one that cannot be relied on."""
     head = Catalog()
     _read_head(source, head)
     start, crc = _read_footer(source)
@@ -61,7 +61,7 @@ def read_index(source: Source) -> Catalog:
 
 
 def _newest(source: Source, start: int, head: Catalog) -> Catalog:
-    """Return what the newest summary tells of a file that was not closed.
+    """Return the catalogue that the newest summary has of a file that was not closed.
 
     The summary that the footer leads to is one of four, by turns. After a power cut any part of what was written last
     may lack: the newest is the one that counts the most messages, if the chunks that it names are there.
@@ -192,14 +192,14 @@ def _leave_out_bombs(source: Source, catalog: Catalog) -> None:
     claimed, most = sum(each.size for each in catalog.blocks), most_of_file(source.size)
     if claimed <= most:
         return
-    kept, left = [], most
+    retained, left = [], most
     for each in catalog.blocks:
         if each.size <= max(left, PIECE_RATIO * each.length):
-            kept.append(each)
+            retained.append(each)
             left -= each.size
-    left_out = len(catalog.blocks) - len(kept)
+    left_out = len(catalog.blocks) - len(retained)
     if left_out:
-        catalog.blocks = kept
+        catalog.blocks = retained
         catalog.problems.append(
             f"its chunks claim to be {claimed} bytes, and {most} at most are unpacked of a file of {source.size}:"
             f" {left_out} that claim more than {PIECE_RATIO} times their size are left out"

@@ -144,42 +144,42 @@ class Reader:
         What is broken is left out and added to `problems`. Raises McapError if the file can no longer be read, and
         MissingCompressionError.
         """
-        wanted = set(self.channels) if channels is None else set(self.channels).intersection(channels)
+        selected = set(self.channels) if channels is None else set(self.channels).intersection(channels)
         low, high = start or 0, (1 << 64) if end is None else end
         blocks = [
             each
             for each in self._catalog.blocks
             if each.last >= low
             and each.first < high
-            and (each.channels is None or not wanted.isdisjoint(each.channels))
+            and (each.channels is None or not selected.isdisjoint(each.channels))
         ]
         if not in_log_order:
-            return self._in_file_order(blocks, wanted, low, high, reverse)
-        return self._in_log_order(blocks, wanted, low, high, reverse)
+            return self._in_file_order(blocks, selected, low, high, reverse)
+        return self._in_log_order(blocks, selected, low, high, reverse)
 
     def close(self) -> None:
         """Close the file."""
         self._source.close()
 
     def _in_file_order(
-        self, blocks: list[Block], wanted: set[int], low: int, high: int, reverse: bool
+        self, blocks: list[Block], selected: set[int], low: int, high: int, reverse: bool
     ) -> Iterator[Message]:
         for data in loaded(blocks[::-1] if reverse else blocks, self._load):
-            found = self._messages(data, wanted, low, high)
+            found = self._messages(data, selected, low, high)
             yield from reversed(found) if reverse else found
 
     def _in_log_order(
-        self, blocks: list[Block], wanted: set[int], low: int, high: int, reverse: bool
+        self, blocks: list[Block], selected: set[int], low: int, high: int, reverse: bool
     ) -> Iterator[Message]:
         """Iterate in order of log time, over chunks that may overlap."""
         time = attrgetter("last" if reverse else "first")
         blocks = sorted(blocks, key=time, reverse=reverse)
-        chunks = (self._messages(data, wanted, low, high) for data in loaded(blocks, self._load))
+        chunks = (self._messages(data, selected, low, high) for data in loaded(blocks, self._load))
         times = [*map(time, blocks[1:]), None]
         return in_log_order(zip(chunks, times, strict=False), reverse=reverse)
 
-    def _messages(self, data: Buffer | None, wanted: set[int], low: int, high: int) -> list[Message]:
-        return [] if data is None else messages_of(data, wanted, low, high)
+    def _messages(self, data: Buffer | None, selected: set[int], low: int, high: int) -> list[Message]:
+        return [] if data is None else messages_of(data, selected, low, high)
 
     def _load(self, block: Block) -> Buffer | None:
         """Return the records of a block; None if it is broken, which is noted. A thread may call it."""

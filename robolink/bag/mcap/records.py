@@ -105,7 +105,7 @@ class ChunkIndex(NamedTuple):
 
 
 class Malformed(Exception):  # noqa: N818 - it never leaves this room
-    """Bytes that are no record, or not the one that they should be."""
+    """Bytes that are not a record, or not the one that they should be."""
 
 
 class Unindexed(Malformed):
@@ -185,7 +185,7 @@ def chunk_index_record(index: ChunkIndex) -> bytes:
 
 
 def chunk_opening(first: int, last: int, size: int, crc: int, compression: str, packed: int) -> bytes:
-    """Return what stands before the packed data of a chunk of `size` bytes."""
+    """Return the head of a chunk: the bytes before its `size` bytes of packed data."""
     content = _chunk_head.pack(first, last, size, crc) + text(compression) + _u64.pack(packed)
     return opening(CHUNK, len(content) + packed) + content
 
@@ -245,7 +245,7 @@ class Fields:
         return found
 
     def text(self) -> str:
-        """Return a string; bytes that are no UTF-8 are replaced."""
+        """Return a string; bytes that are not UTF-8 are replaced."""
         return self.data().decode("utf-8", "replace")
 
     def mapping(self) -> dict[str, str]:
@@ -324,7 +324,7 @@ class ChunkHead(NamedTuple):
 
 
 def read_chunk_head(content: Buffer) -> ChunkHead:
-    """Return what stands before the packed data, of a chunk's content or its first bytes."""
+    """Return the head of a chunk, which stands before the packed data, of its content or its first bytes."""
     fields = Fields(content)
     first, last, size, crc = fields.numbers("QQQI")
     compression = fields.text()

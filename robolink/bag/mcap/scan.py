@@ -113,7 +113,7 @@ def _may_be_record(source: Source, at: int) -> bool:
 
 
 def scan(source: Source) -> Catalog:
-    """Return what is found in a file by reading all of it. What is broken is left out and named in its problems."""
+    """Return the catalogue of a file, by reading all of it. Broken parts are left out and named in its problems."""
     return _Scan(source).run()
 
 

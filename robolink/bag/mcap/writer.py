@@ -260,7 +260,7 @@ class Writer:
             self._clear()
 
     def _packed_open(self) -> Packed:
-        """Return what is in no closed chunk yet, as it is in the next slot."""
+        """Return the messages of the open chunk, as they are in the next slot."""
         return self._contents.pack(self._tail.next_slot, chunk_data(self._parts, "", bytes), self._entries)
 
     def _show(self) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Container, Iterator, Sequence
 from typing import Protocol
 
 from robolink.bag.playing.pacing import Playhead
-from robolink.bag.playing.publishers import is_latched, kept_of
+from robolink.bag.playing.publishers import is_latched, retained_of
 from robolink.bag.playing.settings import RECEIVED, PlayError, PlaySettings, check_rate
 from robolink.bag.reader import Bag, merged_messages, merged_topics
 from robolink.bag.selection import Selection
@@ -60,7 +60,7 @@ class Playlist:
         return self._sorted(merged) if self._by_sent else merged
 
     def latched(self, before: int, names: Container[str] | None = None) -> list[BagMessage]:
-        """Return what latched topics would have kept for a late subscription at a time, oldest first.
+        """Return the messages that latched topics would have retained for a late subscription, oldest first.
 
         Args:
             before: The time, in nanoseconds since 1970.
@@ -71,7 +71,7 @@ class Playlist:
             if is_latched(topic) and (names is None or name in names):
                 bags = (each for each in self._bags if each.counts.get(name))
                 newest = merged_messages(bags, [name], None, before, reverse=True)
-                found += [each._replace(data=bytes(each.data)) for each in itertools.islice(newest, kept_of(topic))]
+                found += [each._replace(data=bytes(each.data)) for each in itertools.islice(newest, retained_of(topic))]
         found.reverse()  # for those of one moment, which keep their order
         return sorted(found, key=lambda each: each.log_time)
 
@@ -106,7 +106,7 @@ class Messages(Protocol):
         """Yield the messages from `start` to before `end`."""
 
     def latched(self, before: int) -> list[BagMessage]:
-        """Return what latched topics have kept at a time."""
+        """Return the messages that latched topics have retained at a time."""
 
 
 class Playback:

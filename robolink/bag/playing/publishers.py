@@ -20,7 +20,7 @@ from robolink.publisher import Publisher
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 DEPTH = 10
-MOST_KEPT = 1000
+MOST_RETAINED = 1000
 """Bound of the messages that a latched topic keeps for late subscriptions."""
 TF_STATIC = "/tf_static"
 
@@ -35,14 +35,14 @@ def is_latched(topic: BagTopic) -> bool:
     return any(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in topic.offered_qos)
 
 
-def kept_of(topic: BagTopic) -> int:
+def retained_of(topic: BagTopic) -> int:
     """Return how many of its messages a latched topic keeps: those of all its publishers."""
     if not topic.offered_qos:
-        return MOST_KEPT
+        return MOST_RETAINED
     latching = [each for each in topic.offered_qos if each.durability is DurabilityPolicy.TRANSIENT_LOCAL]
     if any(each.history is HistoryPolicy.KEEP_ALL for each in latching):
-        return MOST_KEPT
-    return min(MOST_KEPT, sum(max(1, each.depth) for each in latching))
+        return MOST_RETAINED
+    return min(MOST_RETAINED, sum(max(1, each.depth) for each in latching))
 
 
 def offered(topic: BagTopic) -> QoSProfile:
@@ -53,10 +53,10 @@ def offered(topic: BagTopic) -> QoSProfile:
     """
     recorded = topic.offered_qos
     durable = is_latched(topic)
-    depth = kept_of(topic) if durable else max(DEPTH, *(each.depth for each in recorded)) if recorded else DEPTH
+    depth = retained_of(topic) if durable else max(DEPTH, *(each.depth for each in recorded)) if recorded else DEPTH
     reliable = not recorded or any(each.reliability is not ReliabilityPolicy.BEST_EFFORT for each in recorded)
     profile = QoSProfile(
-        depth=min(depth, MOST_KEPT),
+        depth=min(depth, MOST_RETAINED),
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=DurabilityPolicy.TRANSIENT_LOCAL if durable else DurabilityPolicy.VOLATILE,
     )
@@ -227,7 +227,7 @@ class Requests:
 
     Args:
         node: Node that calls; somebody has to spin it.
-        topics: Topics of bags; those that are no events of services are left alone.
+        topics: Topics of bags; those that are not events of services are left alone.
         source: Which events count, a key of SOURCES.
         warn: Called with one line for each service that cannot be called, and once for each that is not there.
     """

@@ -101,10 +101,10 @@ class PlayerServices:
 
     async def _burst(self, request: Any, response: Any) -> Any:
         """Deliver messages turn by turn, so that other services and Ctrl-C get theirs: a loop may never end."""
-        wanted, done = request.num_messages, 0
-        while not wanted or done < wanted:
-            turn = min(TURN, wanted - done) if wanted else TURN
-            delivered = self._playback.burst(turn, around=bool(wanted))
+        selected, done = request.num_messages, 0
+        while not selected or done < selected:
+            turn = min(TURN, selected - done) if selected else TURN
+            delivered = self._playback.burst(turn, around=bool(selected))
             done += delivered
             if delivered < turn or not self._node.context.ok():
                 break

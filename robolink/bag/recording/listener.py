@@ -127,8 +127,8 @@ class Collector:
             if at is not None:
                 sent = published if published > 0 else 0  # of a wrong clock: no MCAP has times before 1970
                 taken.append(make_arrived((topic, at, sent, sequence, data)))
-                if topic.kept is not None:
-                    topic.kept.append(taken[-1])
+                if topic.retained is not None:
+                    topic.retained.append(taken[-1])
         self._pass_on(taken)
 
     def _pass_on(self, taken: list[Arrived]) -> None:

@@ -117,7 +117,7 @@ class Recording:
         self._state = threading.Lock()
         self._began = self._took = 0.0
         self._error = ""
-        self._told: dict[str, tuple[int, int]] = {}
+        self._reported: dict[str, tuple[int, int]] = {}
 
     # Life
 
@@ -210,7 +210,7 @@ class Recording:
         self._do(self._running().split)
 
     def snapshot(self) -> bool:
-        """Write what the cache has into the bag; False if it was not started in snapshot mode or has nothing.
+        """Write the messages of the cache into the bag; False if it was not started in snapshot mode or has nothing.
 
         Raises RecordingError when there is no recording.
         """
@@ -261,19 +261,19 @@ class Recording:
 
     def _keep_latched(self) -> None:
         for topic in list(self._listener.topics.values()):
-            if topic.kept is None and topic.is_latched:
+            if topic.retained is None and topic.is_latched:
                 topic.keep(topic.latched_depth)
 
     def _write_latched(self) -> None:
-        """Write what was latched in the pause, on the writer's thread."""
+        """Write the messages that were latched in the pause, on the writer's thread."""
         assert self._writing is not None
         now = self._now()
         for topic in list(self._listener.topics.values()):
-            kept: list[Arrived] = [each for each in list(topic.kept or ()) if each.log_time >= self._paused_at]
+            retained: list[Arrived] = [each for each in list(topic.retained or ()) if each.log_time >= self._paused_at]
             if topic.is_latched:
-                self._writing.write_again(kept, now)
+                self._writing.write_again(retained, now)
             if not (self.settings.repeat_all_latched or topic.name in self.settings.repeat_latched):
-                topic.kept = None
+                topic.retained = None
 
     def _fail(self, reason: str) -> None:
         self._error = reason
@@ -283,8 +283,8 @@ class Recording:
     def _tell_of_losses(self) -> None:
         """Warn of what was dropped and lost since the last warning: each topic in one line."""
         for topic in list(self._listener.topics.values()):
-            dropped, lost = self._told.get(topic.name, (0, 0))
-            self._told[topic.name] = topic.dropped, max(lost, topic.lost)
+            dropped, lost = self._reported.get(topic.name, (0, 0))
+            self._reported[topic.name] = topic.dropped, max(lost, topic.lost)
             if topic.dropped > dropped:
                 self._news.warn(
                     f"{topic.name}: {topic.dropped - dropped} messages dropped, {topic.dropped} in all: they come"

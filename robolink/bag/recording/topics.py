@@ -45,9 +45,9 @@ class RecordSettings(NamedTuple):
     max_bag_files: int = 0
     """Number of files that are kept, the newest ones; 0 keeps all."""
     max_cache_size: int = CACHE_SIZE
-    """Limit of the messages that wait to be written, or of a snapshot, in bytes; 0 is no limit."""
+    """Limit of the messages that wait to be written, or of a snapshot, in bytes; 0 for no limit."""
     max_cache_duration: float = 0.0
-    """Limit of the time between the first and the last of them, in seconds; 0 is no limit."""
+    """Limit of the time between the first and the last of them, in seconds; 0 for no limit."""
     snapshot_mode: bool = False
     """True to keep messages in memory, and to write them when a snapshot is asked for."""
     start_paused: bool = False
@@ -118,7 +118,7 @@ class RecordedTopic:
         """Number of the topic in the bag; -1 while its definition is not known."""
         self.pending: list[Arrived] = []
         """Messages that wait for that."""
-        self.kept: deque[Arrived] | None = None
+        self.retained: deque[Arrived] | None = None
         """Last messages, if they are to be repeated."""
 
     @property
@@ -139,8 +139,8 @@ class RecordedTopic:
 
     def keep(self, depth: int) -> None:
         """Keep so many last messages from now on, to be repeated."""
-        if self.kept is None or self.kept.maxlen != depth:
-            self.kept = deque(self.kept or (), maxlen=depth)
+        if self.retained is None or self.retained.maxlen != depth:
+            self.retained = deque(self.retained or (), maxlen=depth)
 
     def _numbers_count(self, gid: bytes) -> bool:
         """Return whether gaps in a publisher's numbers are losses: not for one that sends to several keys."""
@@ -162,7 +162,7 @@ class Definitions:
 
     def __init__(self, context: Context, found: Found, warn: Callable[[str], object]) -> None:
         self._context, self._found, self._warn = context, found, warn
-        self._asked: queue.SimpleQueue[RecordedTopic | None] = queue.SimpleQueue()
+        self._requested: queue.SimpleQueue[RecordedTopic | None] = queue.SimpleQueue()
         self._known: dict[tuple[str, str], str] = {}
         self._unknown: dict[tuple[str, str], list[RecordedTopic]] = {}
         """Topics that wait for the type that is being asked for."""
@@ -175,11 +175,11 @@ class Definitions:
 
     def look_up(self, topic: RecordedTopic) -> None:
         """Look up the type of a topic, in its turn."""
-        self._asked.put(topic)
+        self._requested.put(topic)
 
     def close(self) -> None:
         """Look up nothing more; what waits for a node's answer is told of as unknown."""
-        self._asked.put(None)
+        self._requested.put(None)
         if self._thread.ident is not None:  # it was started
             waits.join(self._thread)
         with self._lock:
@@ -189,7 +189,7 @@ class Definitions:
             self._found(topic, "")
 
     def _run(self) -> None:
-        for topic in iter(self._asked.get, None):
+        for topic in iter(self._requested.get, None):
             text = self._installed(topic)
             if text is None:
                 self._ask(topic)

@@ -197,7 +197,7 @@ class Writing:
         return future
 
     def close(self) -> None:
-        """Write what the cache has, close the bag and end the thread."""
+        """Write the messages of the cache, close the bag and end the thread."""
         self._closes = True
         self._cache.wake()
         waits.join(self._thread)
@@ -221,7 +221,7 @@ class Writing:
                 self._count(each)
 
     def write_snapshot(self, messages: list[Arrived]) -> None:
-        """Write what a snapshot has, into a file of its own."""
+        """Write the messages of a snapshot, into a file of its own."""
         if self.messages:
             self._bag.split()
         if messages:
@@ -247,7 +247,7 @@ class Writing:
             self._fail(error)
 
     def _step(self) -> bool:
-        """Write what there is, and do what is asked; return whether there was anything."""
+        """Write the messages that wait, and do what was requested; return whether there was anything."""
         batch = self._cache.take(0.0 if self._closes else TICK)
         self._write(batch)
         commanded = self._obey()
@@ -290,7 +290,7 @@ class Writing:
     def _repeat(self, now: int, but: set[int]) -> None:
         """Begin a file with the last messages of the topics that are repeated."""
         for topic in self.topics:
-            self.write_again([each for each in list(topic.kept or ()) if id(each) not in but], now)
+            self.write_again([each for each in list(topic.retained or ()) if id(each) not in but], now)
 
     def _obey(self) -> bool:
         did = False

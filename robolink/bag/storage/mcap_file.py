@@ -86,9 +86,9 @@ class McapReader(StorageReader):
     ) -> Iterator[BagMessage]:
         """Yield messages in the order of their log times."""
         names = {id_: self.topics[number].name for id_, number in self._numbers.items()}
-        wanted = None if topics is None else [id_ for id_, name in names.items() if name in topics]
+        selected = None if topics is None else [id_ for id_, name in names.items() if name in topics]
         with _errors(self.path):
-            for each in self._reader.messages(wanted, start, end, reverse=reverse):
+            for each in self._reader.messages(selected, start, end, reverse=reverse):
                 yield BagMessage(names[each.channel], each.data, each.log_time, each.publish_time, each.sequence)
 
     def close(self) -> None:

@@ -159,7 +159,7 @@ class SqliteReader(StorageReader):
     ) -> Iterator[BagMessage]:
         """Yield messages in the order of their times; sqlite3 knows only the time at which one was received."""
         names = {id_: each.name for id_, each in zip(self._ids, self.topics, strict=True)}
-        wanted = {id_: name for id_, name in names.items() if topics is None or name in topics}
+        selected = {id_: name for id_, name in names.items() if topics is None or name in topics}
         conditions, values = ["1"], list[int]()
         for condition, value in (("timestamp >= ?", start), ("timestamp < ?", end)):
             if value is not None:
@@ -176,7 +176,7 @@ class SqliteReader(StorageReader):
             try:
                 rows = self._database.execute(query, values) if self._salvaged is None else ()
                 for id_, stamp, small, number in rows:
-                    if (name := wanted.get(id_)) is None:
+                    if (name := selected.get(id_)) is None:
                         continue
                     data = self._large(number) if small is None else small
                     if type(data) is bytes and type(stamp) is int:
@@ -188,9 +188,9 @@ class SqliteReader(StorageReader):
             except sqlite3.DatabaseError as error:
                 self._salvage(error)
             if self._salvaged is not None:
-                rest = self._salvaged.rows(wanted, start, end, reverse=reverse)
+                rest = self._salvaged.rows(selected, start, end, reverse=reverse)
                 for id_, stamp, data in itertools.islice(rest, given, None):  # in the same order as those before
-                    yield BagMessage(wanted[id_], data, stamp, stamp)
+                    yield BagMessage(selected[id_], data, stamp, stamp)
 
     def _large(self, number: int) -> object:
         """Return the data of a row that is too large to be sorted with the others; None if it has none."""

@@ -151,8 +151,8 @@ def send_goal(
         ctx.fail("either VALUES or --stdin, not both")
     if not 0 < timeout <= 1e9:
         ctx.fail(f"--timeout: expected a number of seconds above 0, got {timeout:g}")
-    manner = verbs.Manner(feedback, timeout, as_json, node_name)
-    return verbs.run(action, type_, read_stdin("goal") if from_stdin else values or "", manner)
+    mode = verbs.Mode(feedback, timeout, as_json, node_name)
+    return verbs.run(action, type_, read_stdin("goal") if from_stdin else values or "", mode)
 
 
 def _types(context: Context) -> dict[str, list[str]]:

@@ -94,7 +94,7 @@ class GoalError(RobolinkError, RuntimeError):
     """A goal cannot be sent, or was not answered."""
 
 
-class Manner(NamedTuple):
+class Mode(NamedTuple):
     """Options of `send_goal`: how a goal is sent, and what is shown of it."""
 
     feedback: bool = False
@@ -111,7 +111,7 @@ class Manner(NamedTuple):
             say(messages.as_json({name: messages.plain(value) for name, value in plain.items()}))
 
 
-def run(action: str, type_: str, values: str, manner: Manner) -> int:
+def run(action: str, type_: str, values: str, mode: Mode) -> int:
     """Send a goal and wait for its end; return 0 if it succeeded, else 1. Ctrl-C cancels the goal.
 
     Raises GoalError if there is no answer in time, ServiceError if the server goes away, NotFoundError for an unknown
@@ -121,16 +121,16 @@ def run(action: str, type_: str, values: str, manner: Manner) -> int:
         from robolink.action.client import ActionClient
         from robolink.executors import SingleThreadedExecutor
 
-        node = node_of(context, manner.node_name)
+        node = node_of(context, mode.node_name)
         given = GivenRequest(node.resolve_topic_name(action), type_, values)
-        deadline = clocks.monotonic() + manner.timeout
-        chosen = _wait_for_type(context, given, manner, deadline)
+        deadline = clocks.monotonic() + mode.timeout
+        chosen = _wait_for_type(context, given, mode, deadline)
         goal = message_of(chosen.Goal, values)
         client = ActionClient(node, chosen, given.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         _wait_until(client.server_is_ready, node, deadline, f"{given.name} has no complete server")
-        return _Sending(client, executor, manner).run(goal, given.name, deadline)
+        return _Sending(client, executor, mode).run(goal, given.name, deadline)
 
 
 @contextlib.contextmanager
@@ -151,18 +151,18 @@ def _interruptible() -> Iterator[Context]:
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
 
 
-def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Action]:
+def _wait_for_type(context: Context, given: GivenRequest, mode: Mode, deadline: float) -> type[Action]:
     """Wait until the action is served, with the type that is named, if one is; return its class."""
     from robolink.cli.shared.messages import action_type
 
     if not _is_served(context, given):
         _check_early(given)
-    manner.say("Waiting for an action server to become available...")
+    mode.say("Waiting for an action server to become available...")
     patience = clocks.monotonic() + PATIENCE
     while not context.graph.wait_for(lambda: _is_served(context, given), _SLICE):
         now = clocks.monotonic()
         if now >= deadline:
-            raise GoalError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
+            raise GoalError(f"gave up after {mode.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
             patience = float("inf")
             tell(f"waiting: {_why_absent(context, given)}")
@@ -207,8 +207,8 @@ def _wait_until(condition: Callable[[], bool], node: Node, deadline: float, prob
 class _Sending:
     """A goal that has been sent, with its feedback and result."""
 
-    def __init__(self, client: ActionClient, executor: Executor, manner: Manner) -> None:
-        self._client, self._executor, self._manner = client, executor, manner
+    def __init__(self, client: ActionClient, executor: Executor, mode: Mode) -> None:
+        self._client, self._executor, self._mode = client, executor, mode
         self._unheard: OSError | None = None
         """Error of the output, once nobody reads the feedback any more."""
 
@@ -217,13 +217,13 @@ class _Sending:
         from robolink.interfaces.unique_identifier_msgs.msg import UUID
 
         goal_id = UUID(uuid=list(uuid.uuid4().bytes))
-        self._manner.say(f"Sending goal:\n     {messages.as_yaml(goal, WHOLE)}\n")
-        on_feedback = self._show_feedback if self._manner.feedback else None
+        self._mode.say(f"Sending goal:\n     {messages.as_yaml(goal, WHOLE)}\n")
+        on_feedback = self._show_feedback if self._mode.feedback else None
         sent = self._client.send_goal_async(goal, on_feedback, goal_id)
         try:
             self._spin(sent, deadline - clocks.monotonic())
             if not sent.done():
-                raise GoalError(f"{name} did not answer within {self._manner.timeout:g} s whether it accepts the goal")
+                raise GoalError(f"{name} did not answer within {self._mode.timeout:g} s whether it accepts the goal")
             return self._follow(sent.result())
         except (KeyboardInterrupt, BrokenPipeError, GoalError):
             self._cancel(goal_id)
@@ -236,15 +236,15 @@ class _Sending:
         assert handle is not None
         number = bytes(handle.goal_id.uuid).hex()
         if not handle.accepted:
-            self._manner.say("Goal was rejected.", goal_id=number, accepted=False)
+            self._mode.say("Goal was rejected.", goal_id=number, accepted=False)
             return 1
-        self._manner.say(f"Goal accepted with ID: {number}\n", goal_id=number, accepted=True)
+        self._mode.say(f"Goal accepted with ID: {number}\n", goal_id=number, accepted=True)
         future = handle.get_result_async()
         self._spin(future)
         response: Any = future.result()
         status = NAMES.get(response.status, str(response.status))
-        self._manner.say(f"Result:\n    {messages.as_yaml(response.result, WHOLE)}\n")
-        self._manner.say(f"Goal finished with status: {status}", status=status, result=response.result)
+        self._mode.say(f"Result:\n    {messages.as_yaml(response.result, WHOLE)}\n")
+        self._mode.say(f"Goal finished with status: {status}", status=status, result=response.result)
         return int(response.status != GoalStatus.STATUS_SUCCEEDED)
 
     def _show_feedback(self, message: Any) -> None:
@@ -252,20 +252,20 @@ class _Sending:
             return
         feedback = message.feedback
         try:
-            self._manner.say(f"Feedback:\n    {messages.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
+            self._mode.say(f"Feedback:\n    {messages.as_yaml(feedback, WHOLE)}\n", feedback=feedback)
         except OSError as error:  # raised where it is waited for: a callback that raises is logged
             self._unheard = error
 
     def _cancel(self, goal_id: UUID) -> None:
         """Cancel the goal, even if the answer is not known yet that it was accepted."""
         with contextlib.suppress(BrokenPipeError):
-            self._manner.say("Canceling goal...")
+            self._mode.say("Canceling goal...")
         problem = self._why_not_canceled(goal_id)
         with contextlib.suppress(BrokenPipeError):
             if problem:
                 tell(f"robolink: the goal is not cancelled: {problem}")
             else:
-                self._manner.say("Goal canceled.", canceled=True)
+                self._mode.say("Goal canceled.", canceled=True)
 
     def _why_not_canceled(self, goal_id: UUID) -> str:
         from robolink.action.client import ClientGoalHandle

@@ -98,7 +98,7 @@ def convert_bags(
     from robolink.bag.converting import Output
 
     paths, target = _paths(list(words or []), list(inputs or []), output_options)
-    wished = Output(
+    requested = Output(
         target,
         storage,
         selection_of(ctx.params).checked(),
@@ -107,7 +107,7 @@ def convert_bags(
         max_bag_size,
         max_bag_duration,
     )
-    _convert(paths, output_options, wished, (start_offset, duration))
+    _convert(paths, output_options, requested, (start_offset, duration))
 
 
 def _word(name: str) -> str:
@@ -130,7 +130,7 @@ def _paths(words: list[str], inputs: list[str], options: Path | None) -> tuple[l
     return found, Path(target)
 
 
-def _convert(paths: Sequence[str], options: Path | None, wished: Output, span: tuple[float, float]) -> None:
+def _convert(paths: Sequence[str], options: Path | None, requested: Output, span: tuple[float, float]) -> None:
     """Convert with a bar of progress, and print a line for each bag that was written."""
     import contextlib
 
@@ -142,7 +142,7 @@ def _convert(paths: Sequence[str], options: Path | None, wished: Output, span: t
     outputs = read_outputs(options) if options is not None else []
     with contextlib.ExitStack() as stack:
         bags = [stack.enter_context(open_bag(each)) for each in paths]
-        outputs = outputs or [_between(wished, bags, *span)]
+        outputs = outputs or [_between(requested, bags, *span)]
         total = sum(each.metadata.message_count for each in bags)
         with Progress(total, "messages") as progress:
             counts = convert(bags, outputs, progress.show)
@@ -152,10 +152,10 @@ def _convert(paths: Sequence[str], options: Path | None, wished: Output, span: t
         say(_written(output, count))
 
 
-def _between(wished: Output, bags: Sequence[Bag], offset: float, duration: float) -> Output:
+def _between(requested: Output, bags: Sequence[Bag], offset: float, duration: float) -> Output:
     """Return the output with its limits of time, which are counted from the first message of all bags."""
     begin = min((each.start_time for each in bags if each.metadata.message_count), default=0) + round(offset * 1e9)
-    return wished._replace(
+    return requested._replace(
         start=begin if offset else None,
         end=begin + round(duration * 1e9) if duration else None,
     )

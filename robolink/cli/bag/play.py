@@ -185,12 +185,12 @@ def play(
 
     Space pauses and resumes, the right arrow or s plays the next message, up and down change the rate.
     """
-    from robolink.cli.bag.player import Wish, run
+    from robolink.cli.bag.player import Request, run
 
     paths = _paths(ctx, words, inputs)
     settings = _settings(ctx)
-    wish = Wish(node_name, log_level, not no_keys, progress_rate, tuple(remap or ()), enclave)
-    raise typer.Exit(run(paths, settings, wish))
+    request = Request(node_name, log_level, not no_keys, progress_rate, tuple(remap or ()), enclave)
+    raise typer.Exit(run(paths, settings, request))
 
 
 def _paths(ctx: typer.Context, words: Sequence[str] | None, inputs: Sequence[str] | None) -> list[str]:

@@ -28,7 +28,7 @@ STEP = 0.1
 """Part of the rate by which a key changes it."""
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of `bag play`, besides those of the player."""
 
     node_name: str = "rosbag2_player"
@@ -40,13 +40,13 @@ class Wish(NamedTuple):
     enclave: str = ""
 
 
-def run(paths: Sequence[str], settings: PlaySettings, wish: Wish) -> int:
+def run(paths: Sequence[str], settings: PlaySettings, request: Request) -> int:
     """Play until the end of the bags, Ctrl-C, SIGTERM or the service `~/stop`; return the exit code.
 
     Raises BagError and PlayError (ValueErrors) for bags that cannot be played.
     """
-    with opened(wish.enclave) as context, ProgressLine() as line:
-        command = _Command(context, paths, settings, wish)
+    with opened(request.enclave) as context, ProgressLine() as line:
+        command = _Command(context, paths, settings, request)
         try:
             command.run(line)
         except (KeyboardInterrupt, ExternalShutdownException):  # a usual end: Ctrl-C, or SIGTERM
@@ -60,31 +60,31 @@ def run(paths: Sequence[str], settings: PlaySettings, wish: Wish) -> int:
 class _Command:
     """One run of the command."""
 
-    def __init__(self, context: Context, paths: Sequence[str], settings: PlaySettings, wish: Wish) -> None:
-        arguments = [word for each in wish.remappings for word in ("-r", each)]
-        self._context, self._wish = context, wish
+    def __init__(self, context: Context, paths: Sequence[str], settings: PlaySettings, request: Request) -> None:
+        arguments = [word for each in request.remappings for word in ("-r", each)]
+        self._context, self._request = context, request
         self._node = Node(
-            wish.node_name,
+            request.node_name,
             context=context,
             cli_args=["--ros-args", *arguments] if arguments else None,
             start_parameter_services=False,
         )
         self._logger = self._node.get_logger()
-        self._logger.set_level(LoggingSeverity[wish.log_level.upper()])
+        self._logger.set_level(LoggingSeverity[request.log_level.upper()])
         self._served = ServedPlayer(self._node, paths, settings)
         self._player, self._playback = self._served.player, self._served.playback
-        self._told = 0
+        self._reported = 0
 
     def run(self, line: ProgressLine) -> None:
         """Play until something ends it."""
-        steered = keys() if self._wish.keys else contextlib.nullcontext(self._waited)
+        steered = keys() if self._request.keys else contextlib.nullcontext(self._waited)
         with BackgroundSpin(self._node), steered as read:
             self._greet()
             self._served.start()
             shown_at = -1e9
             while not self._player.ended.is_set() and self._context.ok():
                 self._obey(read(LOOK))
-                rate = self._wish.progress_rate
+                rate = self._request.progress_rate
                 if rate >= 0 and (not rate or clocks.monotonic() - shown_at >= 1 / rate):
                     shown_at = clocks.monotonic()
                     line.show(self._progress())
@@ -101,7 +101,7 @@ class _Command:
 
     def _greet(self) -> None:
         self._logger.info(f"Set rate to {self._playback.rate:g}")
-        if self._wish.keys:
+        if self._request.keys:
             for key, action in (
                 ("SPACE", "Pause/Resume"),
                 ("CURSOR_RIGHT", "Play Next Message"),
@@ -136,8 +136,8 @@ class _Command:
         )
 
     def _tell_problems(self) -> None:
-        """Write what could not be read, each once."""
+        """Write the files that could not be read, each once."""
         problems = self._player.problems
-        for each in problems[self._told :]:
+        for each in problems[self._reported :]:
             tell(each)
-        self._told = len(problems)
+        self._reported = len(problems)

@@ -204,7 +204,7 @@ def record(
 
     The bag is valid at every moment, even after a crash. Space pauses and resumes, s takes a snapshot.
     """
-    from robolink.cli.bag.recorder import Wish, run
+    from robolink.cli.bag.recorder import Request, run
 
     settings = _settings(ctx)
     selection = _selection(ctx.params, settings.static_topics)
@@ -214,7 +214,7 @@ def record(
             " --topic-types, --static-topics-path or --regex"
         )
     path = output or time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S")
-    code = run(path, selection, settings, Wish(node_name, log_level, not no_keys, as_json, enclave))
+    code = run(path, selection, settings, Request(node_name, log_level, not no_keys, as_json, enclave))
     raise typer.Exit(code)
 
 

@@ -66,7 +66,7 @@ def as_data(figures: Figures) -> dict[str, Any]:
 
 
 def losses(figures: Figures) -> list[str]:
-    """Return what was dropped and lost, in short; nothing where nothing was."""
+    """Return the numbers of dropped and lost messages, in short; '' for none."""
     return [*_named("dropped", figures.dropped), *_named("lost", figures.lost)]
 
 
@@ -94,7 +94,7 @@ SHOW = 0.5
 """Time in seconds from one progress line to the next."""
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of `bag record`, besides those of the recording."""
 
     node_name: str = "rosbag2_recorder"
@@ -104,38 +104,38 @@ class Wish(NamedTuple):
     enclave: str = ""
 
 
-def run(path: str | Path, selection: Selection, settings: RecordSettings, wish: Wish) -> int:
+def run(path: str | Path, selection: Selection, settings: RecordSettings, request: Request) -> int:
     """Record until Ctrl-C, SIGTERM, the service `~/stop`, or until the bag can no longer be written; return the code.
 
     Raises BagError (a ValueError) if the bag cannot be made, SelectionError if nothing is selected.
     """
-    with opened(wish.enclave) as context, ProgressLine() as line:
-        command = _Command(context, path, selection, settings, wish)
+    with opened(request.enclave) as context, ProgressLine() as line:
+        command = _Command(context, path, selection, settings, request)
         try:
             command.run(line)
         except (KeyboardInterrupt, ExternalShutdownException):  # the usual end: Ctrl-C, or SIGTERM
             pass
         finally:
             command.end(line)
-        return command.told()
+        return command.reported()
 
 
 class _Command:
     """One run of the command."""
 
     def __init__(
-        self, context: Context, path: str | Path, selection: Selection, settings: RecordSettings, wish: Wish
+        self, context: Context, path: str | Path, selection: Selection, settings: RecordSettings, request: Request
     ) -> None:
-        self._context, self._wish, self._settings = context, wish, settings
-        self._node = Node(wish.node_name, context=context, start_parameter_services=False)
+        self._context, self._request, self._settings = context, request, settings
+        self._node = Node(request.node_name, context=context, start_parameter_services=False)
         self._logger = self._node.get_logger()
-        self._logger.set_level(LoggingSeverity[wish.log_level.upper()])
+        self._logger.set_level(LoggingSeverity[request.log_level.upper()])
         self._served = ServedRecording(self._node, path, selection, settings)
         self._recording = self._served.recording
 
     def run(self, line: ProgressLine) -> None:
         """Record until something ends it."""
-        steered = keys() if self._wish.keys else contextlib.nullcontext(_wait)
+        steered = keys() if self._request.keys else contextlib.nullcontext(_wait)
         with BackgroundSpin(self._node), steered as read:
             self._served.start()
             self._greet()
@@ -154,10 +154,10 @@ class _Command:
             self._recording.stop()
             self._logger.info("Recording stopped")
 
-    def told(self) -> int:
+    def reported(self) -> int:
         """Print how it went, and return the exit code."""
         figures = self._recording.figures()
-        if self._wish.json:
+        if self._request.json:
             say_json(as_data(figures))
         else:
             for each in summary(figures):
@@ -168,7 +168,7 @@ class _Command:
         return not self._context.ok() or self._served.is_over
 
     def _greet(self) -> None:
-        if self._wish.keys:
+        if self._request.keys:
             self._logger.info("Press SPACE for pausing/resuming")
         if not self._settings.use_sim_time:
             self._logger.info("Listening for topics...")

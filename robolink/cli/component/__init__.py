@@ -87,10 +87,10 @@ def load(
     """Load a component into a container."""
     from robolink.cli.component import verbs
 
-    wanted = verbs.Wanted(
+    requested = verbs.Requested(
         package, plugin, name, namespace, LEVELS[log_level], remap or [], parameters or [], extra or []
     )
-    answer = verbs.load(container, wanted)
+    answer = verbs.load(container, requested)
     text = f"Loaded component {answer.unique_id} into '{container}' container node as '{answer.full_node_name}'"
     say(str(answer.unique_id) if quiet else text)
 
@@ -125,7 +125,7 @@ def standalone(
     """Run a component in a container of its own, until Ctrl-C."""
     from robolink.cli.component import verbs
 
-    wanted = verbs.Wanted(
+    requested = verbs.Requested(
         package, plugin, name, namespace, LEVELS[log_level], remap or [], parameters or [], extra or []
     )
-    verbs.run(wanted, container)
+    verbs.run(requested, container)

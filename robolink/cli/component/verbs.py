@@ -49,7 +49,7 @@ class ComponentError(RobolinkError, RuntimeError):
     """A container does not answer, or refuses."""
 
 
-class Wanted(NamedTuple):
+class Requested(NamedTuple):
     """A component to load, as `robolink component load` was told of it."""
 
     package: str
@@ -88,21 +88,21 @@ def listed(container: str = "") -> list[tuple[str, list[tuple[int, str]]]]:
     return found
 
 
-def load(container: str, wanted: Wanted) -> LoadNode.Response:
+def load(container: str, requested: Requested) -> LoadNode.Response:
     """Load a component into a running container. Raises ComponentError with the container's reason if that fails."""
     request = LoadNode.Request(
-        package_name=wanted.package,
-        plugin_name=wanted.plugin,
-        node_name=wanted.name,
-        node_namespace=wanted.namespace,
-        log_level=wanted.log_level,
-        remap_rules=list(wanted.remap_rules),
-        parameters=[_parameter(each) for each in wanted.parameters],
-        extra_arguments=[_parameter(each) for each in wanted.extra_arguments],
+        package_name=requested.package,
+        plugin_name=requested.plugin,
+        node_name=requested.name,
+        node_namespace=requested.namespace,
+        log_level=requested.log_level,
+        remap_rules=list(requested.remap_rules),
+        parameters=[_parameter(each) for each in requested.parameters],
+        extra_arguments=[_parameter(each) for each in requested.extra_arguments],
     )
     answer: LoadNode.Response = _ask(container, LoadNode, "load_node", request)
     if not answer.success:
-        raise ComponentError(f"{container} did not load {wanted.package} {wanted.plugin}: {answer.error_message}")
+        raise ComponentError(f"{container} did not load {requested.package} {requested.plugin}: {answer.error_message}")
     return answer
 
 
@@ -185,11 +185,11 @@ BEGINS_WITHIN = 20.0
 """Timeout of the container's announcement, in s."""
 
 
-def run(wanted: Wanted, container: str = "") -> None:
+def run(requested: Requested, container: str = "") -> None:
     """Run a container, and a component in it, until Ctrl-C.
 
     Args:
-        wanted: The component.
+        requested: The component.
         container: Name of the container's node; '' takes one that nobody has.
 
     Raises:
@@ -197,7 +197,7 @@ def run(wanted: Wanted, container: str = "") -> None:
     """
     name = container or f"standalone_container_{uuid.uuid4().hex[:12]}"
     failures: list[RobolinkError] = []
-    thread = threading.Thread(target=_load, args=(name, wanted, failures), name="loading", daemon=True)
+    thread = threading.Thread(target=_load, args=(name, requested, failures), name="loading", daemon=True)
     serve: Any = load_node(find_executable("rclcpp_components", "component_container"))
     sys.argv = ["component_container", "--ros-args", "-r", f"__node:={name}"]
     thread.start()
@@ -206,13 +206,13 @@ def run(wanted: Wanted, container: str = "") -> None:
         raise failures[0]
 
 
-def _load(name: str, wanted: Wanted, failures: list[RobolinkError]) -> None:
+def _load(name: str, requested: Requested, failures: list[RobolinkError]) -> None:
     """Load the component as soon as the container is there; end the container if that fails."""
     try:
         deadline = clocks.monotonic() + BEGINS_WITHIN
         while f"/{name}" not in containers() and clocks.monotonic() < deadline:
             time.sleep(0.05)
-        answer = load(f"/{name}", wanted)
+        answer = load(f"/{name}", requested)
         say(f"Loaded component {answer.unique_id} into '{name}' container node as '{answer.full_node_name}'")
     except RobolinkError as error:
         failures.append(error)

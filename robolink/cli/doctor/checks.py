@@ -84,7 +84,7 @@ def _numbers(version: str) -> tuple[int, ...]:
 
 def settings(facts: Facts) -> Verdict:
     """Check that the environment's settings are valid, and that none is without effect."""
-    environ, wanted = facts.environ, facts.settings
+    environ, expected = facts.environ, facts.settings
     without_effect = [each for each in _NO_EFFECT if environ.get(each, "0") not in ("", "0")]
     warnings = [f"{each}={environ[each][:80]} has no effect: {_NO_EFFECT[each]}" for each in without_effect]
     middleware = environ.get("RMW_IMPLEMENTATION", "")
@@ -93,14 +93,14 @@ def settings(facts: Facts) -> Verdict:
             f"RMW_IMPLEMENTATION={middleware[:80]}: ROS 2 nodes started from here do not meet robolink's; "
             "start them with RMW_IMPLEMENTATION=rmw_zenoh_cpp"
         )
-    if wanted.transport != "zenoh":
-        warnings.append(f"ROBOLINK_TRANSPORT={wanted.transport[:80]}: nodes see only their own process")
-    said = wanted.asked_by if wanted.asked_by in _NOTED else NETWORK  # which the command line or a launch file sets
+    if expected.transport != "zenoh":
+        warnings.append(f"ROBOLINK_TRANSPORT={expected.transport[:80]}: nodes see only their own process")
+    said = expected.asked_by if expected.asked_by in _NOTED else NETWORK  # which the command line or a launch file sets
     noted = [name for name in _NOTED if environ.get(name) and name != said]
     in_force = [f"{name}={environ[name][:80]}" for name in noted]
-    domain = f"domain {wanted.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
-    network = f"network {wanted.network} ({wanted.asked_by or 'the default'})"
-    return Verdict(", ".join([domain, network, *in_force]), wanted.errors, tuple(warnings))
+    domain = f"domain {expected.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
+    network = f"network {expected.network} ({expected.asked_by or 'the default'})"
+    return Verdict(", ".join([domain, network, *in_force]), expected.errors, tuple(warnings))
 
 
 def loopback(facts: Facts) -> Verdict:
@@ -155,13 +155,13 @@ def _nobody(facts: Facts) -> str:
 
 def rendezvous(facts: Facts) -> Verdict:
     """Check that the rendezvous port is free, or held by a node."""
-    wanted = facts.settings
-    if wanted.transport != "zenoh" or not wanted.meets:
+    expected = facts.settings
+    if expected.transport != "zenoh" or not expected.meets:
         return Verdict("not used with these settings")
-    port = facts.ports.get(wanted.port)
+    port = facts.ports.get(expected.port)
     if port is None:
-        return Verdict(f"port {wanted.port} of domain {wanted.domain} is free: the next node takes it")
-    held, keyed = f"port {wanted.port} of domain {wanted.domain} is held by", wanted.port in facts.keyed_ports
+        return Verdict(f"port {expected.port} of domain {expected.domain} is free: the next node takes it")
+    held, keyed = f"port {expected.port} of domain {expected.domain} is held by", expected.port in facts.keyed_ports
     if not port.speaks_zenoh and not keyed:
         hint = "stop it, or choose another ROS_DOMAIN_ID"
         return Verdict("", (f"{held} {_stranger(facts, port)}: {hint}",))
@@ -172,18 +172,18 @@ def rendezvous(facts: Facts) -> Verdict:
 
 def router(facts: Facts) -> Verdict:
     """Check that a ROS 2 router, if there is one, answers, and so does the one that the settings name."""
-    asked, far, port = facts.settings.network, facts.far_router, facts.ports.get(facts.router_port)
+    requested, far, port = facts.settings.network, facts.far_router, facts.ports.get(facts.router_port)
     where = f"port {facts.router_port}, the ROS 2 router's,"
     errors, warnings = [], []
-    if asked.startswith("tcp/") and far is None:
-        errors.append(f"nothing listens at {asked}: start the router there, or unblock the port")
-    elif asked.startswith("tcp/") and far is not None and not far.speaks_zenoh:
-        errors.append(f"{asked} listens but does not answer as Zenoh does")
+    if requested.startswith("tcp/") and far is None:
+        errors.append(f"nothing listens at {requested}: start the router there, or unblock the port")
+    elif requested.startswith("tcp/") and far is not None and not far.speaks_zenoh:
+        errors.append(f"{requested} listens but does not answer as Zenoh does")
     if port is not None and port.number in facts.keyed_ports:
         return _keyed_router(facts, port, tuple(errors))
     if port is not None and port.role != ROUTER:
         errors.append(f"{where} is held by {_stranger(facts, port)}: stop it to meet ROS 2 nodes")
-    elif port is not None and facts.platform == "win32" and asked == "localhost":
+    elif port is not None and facts.platform == "win32" and requested == "localhost":
         hint = f"ROBOLINK_NETWORK=tcp/127.0.0.1:{port.number}"
         warnings.append(f"a ROS 2 router answers; on Windows nodes join it only when asked to: {hint}")
     elif port is not None and not facts.reach.leaves_machine and not facts.reach.secured:
@@ -226,7 +226,7 @@ def _whose(facts: Facts, port: Port) -> str:
 def _stranger(facts: Facts, port: Port) -> str:
     """Return a description of what holds a port that should be another's."""
     if port.speaks_zenoh:
-        return f"{_whose(facts, port)}, which is no router"
+        return f"{_whose(facts, port)}, which is not a router"
     says = {REFUSES: "speaks Zenoh but refuses", SILENT: "accepts connections and says nothing, or is frozen"}
     return f"{_whose(facts, port)} that {says.get(port.role, 'does not speak Zenoh')}"
 

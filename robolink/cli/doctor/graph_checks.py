@@ -76,8 +76,8 @@ def _types(facts: Facts, noun: str, verbs: dict[EndpointKind, str]) -> Verdict:
         giving, taking = owners.values()
         apart = {each for pair in itertools.product(giving, taking) if _differ(*pair) for each in pair}
         if apart:
-            told = _told({verbs[kind]: _only(owners[kind], apart) for kind in verbs})
-            errors.append(f"{name}: {told}: they never meet")
+            reported = _reported({verbs[kind]: _only(owners[kind], apart) for kind in verbs})
+            errors.append(f"{name}: {reported}: they never meet")
     return Verdict(f"{count(len(named), noun)}, both ends agree", tuple(errors))
 
 
@@ -89,7 +89,7 @@ def _only(owners: dict[Variant, list[str]], variants: set[Variant]) -> dict[Vari
     return {variant: names for variant, names in owners.items() if variant in variants}
 
 
-def _told(sides: dict[str, dict[Variant, list[str]]]) -> str:
+def _reported(sides: dict[str, dict[Variant, list[str]]]) -> str:
     """Return in words who uses which type; with its hash if the name alone does not tell them apart."""
     same_name = len({type_name for owners in sides.values() for type_name, _ in owners}) == 1
     return ", ".join(

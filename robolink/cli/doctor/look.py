@@ -90,7 +90,7 @@ def _seen(transport: Transport, domain: int) -> Seen:
 
 
 def _listed(transport: Transport, domain: int) -> list[str]:
-    """Return what is announced, once two listings agree: on a busy machine the first may be incomplete."""
+    """Return the announced tokens, once two listings agree: on a busy machine the first may be incomplete."""
 
     def listing() -> list[str]:
         # Its own domain by name: with security nobody may ask for all domains at once, which others then refuse.
@@ -119,7 +119,7 @@ def _clocks(transport: Transport, tokens: list[NodeToken | EndpointToken]) -> tu
             answers.put((server, sent, clocks.now(), arrived))
 
         with contextlib.suppress(SecurityError):  # this enclave may not ask there: that clock remains unknown
-            calls.append(transport.call(key, _nothing_asked(server.type_name), attachment, sink))
+            calls.append(transport.call(key, _nothing_requested(server.type_name), attachment, sink))
     found = _answered(transport, answers, len(calls))
     for call in calls:
         call.close()
@@ -136,7 +136,7 @@ def one_server_of_each(tokens: Sequence[NodeToken | EndpointToken]) -> list[Endp
     return list(chosen.values())
 
 
-def _nothing_asked(type_name: str) -> bytes:
+def _nothing_requested(type_name: str) -> bytes:
     from robolink.interfaces import find
     from robolink.message import encode
 

@@ -62,7 +62,7 @@ class Description(NamedTuple):
 
 
 def describe(facts: Facts) -> Description:
-    """Return what there is to say, from the facts and by the checks of `robolink doctor`."""
+    """Return the description of the network, from the facts and by the checks of `robolink doctor`."""
     from robolink.cli.doctor import checks
     from robolink.wire import NodeToken
 
@@ -116,12 +116,12 @@ def how(link: Link, facts: Facts) -> str:
 
 def lines(found: Description) -> list[str]:
     """Return the description as lines for people."""
-    asked = f"asked for by {found.asked_by}" if found.asked_by else "the default"
+    requested = f"asked for by {found.asked_by}" if found.asked_by else "the default"
     goes = [*([f"multicast {found.multicast}"] if found.multicast else []), *found.connects]
     sessions = {each["session"] for each in found.links}
     whom = f"{len(sessions)} session{'s' * (len(sessions) != 1)}, {found.nodes} node{'s' * (found.nodes != 1)}"
     result = [
-        f"network   {found.network} ({asked}), domain {found.domain}",
+        f"network   {found.network} ({requested}), domain {found.domain}",
         f"meets     {found.meets}",
         f"listens   {', '.join(found.listens) or 'nowhere'}",
         f"goes to   {', '.join(goes) or 'nobody'}",

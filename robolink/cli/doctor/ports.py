@@ -56,10 +56,10 @@ def holder(number: int, root: Path = Path("/proc")) -> Holder | None:
     """Return the process that listens on a port: on Linux, if it is one of the user's own. Else None."""
     if not sys.platform.startswith("linux"):
         return None
-    wanted = {f"socket:[{inode}]" for _, inode in _listeners(root, number)}
-    for folder in root.glob("[0-9]*/fd") if wanted else ():
+    inodes = {f"socket:[{inode}]" for _, inode in _listeners(root, number)}
+    for folder in root.glob("[0-9]*/fd") if inodes else ():
         with contextlib.suppress(OSError):
-            if any(os.readlink(each) in wanted for each in folder.iterdir()):  # noqa: PTH115 - no path: socket:[n]
+            if any(os.readlink(each) in inodes for each in folder.iterdir()):  # noqa: PTH115 - no path: socket:[n]
                 return Holder(int(folder.parent.name), _command(folder.parent))
     return None
 

@@ -27,7 +27,7 @@ from robolink.system.terminal import shown
 from robolink.task import Future
 from robolink.wire import EndpointKind
 
-TOLD_AFTER = 2.0
+REPORTED_AFTER = 2.0
 """Delay until a note that a topic is waited for, in seconds."""
 
 
@@ -92,7 +92,7 @@ class _Taker:
 
 def _wait_for(context: Context, name: str, timeout: float | None) -> None:
     """Wait until somebody publishes the topic. Raises NoImageError after the timeout, and KeyboardInterrupt."""
-    graph, begin, told = context.graph, clocks.monotonic(), False
+    graph, begin, reported = context.graph, clocks.monotonic(), False
 
     def published() -> bool:
         return bool(graph.endpoints(EndpointKind.PUBLISHER, name=name)) or not context.ok()
@@ -103,9 +103,9 @@ def _wait_for(context: Context, name: str, timeout: float | None) -> None:
             near = nearest(name, {each.name for each in graph.endpoints(EndpointKind.PUBLISHER)})
             raise NoImageError(f"nobody publishes {name}{near}, and {timeout:g} s have passed")
         graph.wait_for(published, 0.5 if timeout is None else min(0.5, timeout - spent))
-        if not told and clocks.monotonic() - begin > TOLD_AFTER:
+        if not reported and clocks.monotonic() - begin > REPORTED_AFTER:
             tell(f"waiting for somebody to publish {name}")
-            told = True
+            reported = True
     if not context.ok():
         raise KeyboardInterrupt
 

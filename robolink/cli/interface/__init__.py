@@ -136,7 +136,7 @@ def _escaped(text: str) -> str:
 
 def _kinds(*only: bool) -> list[str]:
     """Return the kinds that are selected; all, if none is."""
-    return [kind for kind, wanted in zip(HEADINGS, only, strict=True) if wanted] or list(HEADINGS)
+    return [kind for kind, requested in zip(HEADINGS, only, strict=True) if requested] or list(HEADINGS)
 
 
 def _names(kind: str) -> list[str]:

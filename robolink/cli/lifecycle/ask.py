@@ -70,13 +70,15 @@ def transitions(context: Context, node: str, *, every: bool = False) -> list[Tra
     return list(_ask_one(context, GetAvailableTransitions, f"{node}/{service}", request).available_transitions)
 
 
-def make_transition(context: Context, node: str, wanted: str) -> None:
+def make_transition(context: Context, node: str, requested: str) -> None:
     """Trigger a transition of a node, by its name or number. Raises LifecycleCommandError unless that succeeds."""
     there = [each.transition for each in transitions(context, node)]
-    chosen = [each for each in there if each.label == wanted] or [each for each in there if str(each.id) == wanted]
+    chosen = [each for each in there if each.label == requested] or [
+        each for each in there if str(each.id) == requested
+    ]
     if not chosen:
         listed = ", ".join(f"{each.label} [{each.id}]" for each in there) or "none"
-        raise LifecycleCommandError(f"Unknown transition '{shown(wanted)}' requested, available ones are: {listed}")
+        raise LifecycleCommandError(f"Unknown transition '{shown(requested)}' requested, available ones are: {listed}")
     request = ChangeState.Request(transition=chosen[0])
     if not _ask_one(context, ChangeState, f"{node}/change_state", request, CHANGE_WITHIN).success:
         now = states(context, [node])[0].get(node)

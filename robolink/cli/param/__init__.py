@@ -80,8 +80,8 @@ def list_parameters(
     """List the parameters of a node, or of all nodes."""
     from robolink.cli.param import verbs
 
-    wanted = verbs.Wanted(tuple(prefixes or ()), verbs.compiled(pattern), show_types, hidden)
-    verbs.show_list(node, wanted, as_json=as_json)
+    requested = verbs.Requested(tuple(prefixes or ()), verbs.compiled(pattern), show_types, hidden)
+    verbs.show_list(node, requested, as_json=as_json)
 
 
 @app.command("get")
@@ -123,7 +123,7 @@ def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: As
     verbs.dump(node, timeout, as_json=as_json)
 
 
-# A value such as -0.5 is no option.
+# A value such as -0.5 is not an option.
 @app.command("set", context_settings={"ignore_unknown_options": True})
 def set_parameter(
     node: Node,

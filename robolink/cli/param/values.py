@@ -73,15 +73,15 @@ def fitting(value: Any, descriptor: ParameterDescriptor | None) -> ParameterValu
     """Return a plain value with the type that the descriptor fixes, if it can have it; else with its own."""
     type_ = Type.from_parameter_value(value)
     if descriptor is not None and not descriptor.dynamic_typing:
-        wanted = descriptor.type
-        if wanted == Type.DOUBLE and type_ is Type.INTEGER:
+        requested = descriptor.type
+        if requested == Type.DOUBLE and type_ is Type.INTEGER:
             value = float(value)
-        elif wanted == Type.DOUBLE_ARRAY and type_ is Type.INTEGER_ARRAY:
+        elif requested == Type.DOUBLE_ARRAY and type_ is Type.INTEGER_ARRAY:
             value = [float(each) for each in value]
-        elif wanted == Type.BYTE_ARRAY and type_ is Type.INTEGER_ARRAY and all(0 <= each < 256 for each in value):
+        elif requested == Type.BYTE_ARRAY and type_ is Type.INTEGER_ARRAY and all(0 <= each < 256 for each in value):
             value = [bytes([each]) for each in value]
-        if wanted in NAMES and Type(wanted).check(value):
-            return Parameter("", Type(wanted), value).get_parameter_value()
+        if requested in NAMES and Type(requested).check(value):
+            return Parameter("", Type(requested), value).get_parameter_value()
     return Parameter("", value=value).get_parameter_value()
 
 

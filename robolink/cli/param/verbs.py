@@ -152,7 +152,7 @@ def _listed(names: Sequence[str]) -> str:
     return ", ".join(f"'{shown(each)}'" for each in names)
 
 
-class Wanted(NamedTuple):
+class Requested(NamedTuple):
     """Options of `param list`: which parameters of which nodes, and if with their types."""
 
     prefixes: tuple[str, ...] = ()
@@ -173,34 +173,34 @@ def compiled(pattern: str) -> re.Pattern[str] | None:
         raise typer.BadParameter(f"--filter: no regular expression: {error}") from None
 
 
-def show_list(node: str, wanted: Wanted, *, as_json: bool) -> None:
+def show_list(node: str, requested: Requested, *, as_json: bool) -> None:
     """List the parameters of one node, or of all that serve them."""
     if node:
         with asking(node, 0.0) as client:
-            found = {client.name: _names_and_types(client, wanted)}
+            found = {client.name: _names_and_types(client, requested)}
     else:
-        found = _of_all(wanted)
+        found = _of_all(requested)
     if as_json:
-        say(messages.as_json({name: each if wanted.types else list(each) for name, each in found.items()}))
+        say(messages.as_json({name: each if requested.types else list(each) for name, each in found.items()}))
         return
     for name, parameters in found.items():
         if not node and parameters:
             say(f"{name}:")
         for each, type_ in parameters.items():
-            line = f"  {each} (type: {type_})" if wanted.types else f"  {each}"
+            line = f"  {each} (type: {type_})" if requested.types else f"  {each}"
             say(fit(line, lines=False))
 
 
-def _of_all(wanted: Wanted) -> dict[str, Found]:
+def _of_all(requested: Requested) -> dict[str, Found]:
     """Return the parameters of all nodes, asked at once. Those that do not answer are noted on standard error."""
     from concurrent.futures import ThreadPoolExecutor
 
     with looking() as context:
         names = sorted({each.full_node_name for each in context.graph.nodes()})
-        names = [name for name in names if serves(context, name) and (wanted.hidden_nodes or not is_hidden(name))]
+        names = [name for name in names if serves(context, name) and (requested.hidden_nodes or not is_hidden(name))]
         asker = node_of(context)
         with ThreadPoolExecutor(max_workers=max(1, min(32, len(names)))) as pool:
-            futures = {name: pool.submit(_names_and_types, ParameterClient(asker, name), wanted) for name in names}
+            futures = {name: pool.submit(_names_and_types, ParameterClient(asker, name), requested) for name in names}
         found = {}
         for name, future in futures.items():
             try:
@@ -210,9 +210,11 @@ def _of_all(wanted: Wanted) -> dict[str, Found]:
     return found
 
 
-def _names_and_types(client: ParameterClient, wanted: Wanted) -> Found:
-    names = [each for each in client.names(wanted.prefixes) if wanted.pattern is None or wanted.pattern.match(each)]
-    if not wanted.types or not names:
+def _names_and_types(client: ParameterClient, requested: Requested) -> Found:
+    names = [
+        each for each in client.names(requested.prefixes) if requested.pattern is None or requested.pattern.match(each)
+    ]
+    if not requested.types or not names:
         return dict.fromkeys(names, "")
     descriptors = client.descriptors(names)
     return {name: type_name(each.type) for name, each in zip(names, descriptors, strict=True)}
@@ -346,24 +348,26 @@ def _load(client: ParameterClient, values: dict[str, Any]) -> dict[str, SetParam
     known = set(client.names())
     names = [each for each in values if each in known]
     descriptors = dict(zip(names, client.descriptors(names), strict=True)) if names else {}
-    wanted = {name: fitting(value, descriptors.get(name)) for name, value in values.items()}
+    requested = {name: fitting(value, descriptors.get(name)) for name, value in values.items()}
     results = dict.fromkeys(values, SetParametersResult(successful=True, reason=UNCHANGED))
-    to_set = [name for name in values if name not in _unchanged(client, wanted, descriptors)]
-    given = client.set([Parameter(name=name, value=wanted[name]) for name in to_set]) if to_set else []
+    to_set = [name for name in values if name not in _unchanged(client, requested, descriptors)]
+    given = client.set([Parameter(name=name, value=requested[name]) for name in to_set]) if to_set else []
     results.update(zip(to_set, given, strict=True))
     for name in to_set:
         if results[name].successful:
-            _tell_of_type(name, values[name], fitting(values[name], None).type, wanted[name])
+            _tell_of_type(name, values[name], fitting(values[name], None).type, requested[name])
     return results
 
 
 def _unchanged(
-    client: ParameterClient, wanted: dict[str, ParameterValue], descriptors: dict[str, ParameterDescriptor]
+    client: ParameterClient, requested: dict[str, ParameterValue], descriptors: dict[str, ParameterDescriptor]
 ) -> Iterable[str]:
     """Return the read-only parameters that have the wanted value already: a file that was dumped has those too."""
     fixed = [name for name, each in descriptors.items() if each.read_only]
     now = client.settled_values(fixed) if fixed else {}
-    return {name for name, each in now.items() if (each.type, plain(each)) == (wanted[name].type, plain(wanted[name]))}
+    return {
+        name for name, each in now.items() if (each.type, plain(each)) == (requested[name].type, plain(requested[name]))
+    }
 
 
 def _descriptor(client: ParameterClient, parameter: str) -> ParameterDescriptor | None:

@@ -52,7 +52,7 @@ def plot_odometry(
     """Plot the trajectories of Odometry, PoseStamped and other messages with a pose."""
     from robolink.cli.plot import drawing, messages
 
-    drawing.plot_trajectories(topics or [], drawing.POSES, world, messages.Wish(out, duration, bag))
+    drawing.plot_trajectories(topics or [], drawing.POSES, world, messages.Request(out, duration, bag))
 
 
 @app.command("path")
@@ -73,7 +73,7 @@ def plot_path(
     """Plot the latest nav_msgs/msg/Path of topics, over the world."""
     from robolink.cli.plot import drawing, messages
 
-    drawing.plot_trajectories(topics or [], drawing.PATHS, world, messages.Wish(out, duration, bag))
+    drawing.plot_trajectories(topics or [], drawing.PATHS, world, messages.Request(out, duration, bag))
 
 
 @app.command("topic")
@@ -93,4 +93,4 @@ def plot_topic(
     """Plot fields of messages over time."""
     from robolink.cli.plot import drawing, messages
 
-    drawing.plot_fields(fields, messages.Wish(out, duration, bag))
+    drawing.plot_fields(fields, messages.Request(out, duration, bag))

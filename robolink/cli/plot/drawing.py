@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from robolink.cli.plot.messages import PlotError, Wish, check, deadline, listen, show, wait_for
+from robolink.cli.plot.messages import PlotError, Request, check, deadline, listen, show, wait_for
 from robolink.cli.shared import messages as fields
 from robolink.cli.shared.graph import nodes
 from robolink.cli.shared.output import tell
@@ -62,35 +62,35 @@ class Curve:
             self.stamped.append(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def plot_fields(asked: list[str], wish: Wish) -> None:
+def plot_fields(requested: list[str], request: Request) -> None:
     """Listen, or read the bag, and draw the values."""
-    check(wish)
-    curves = _from_network(asked, wish) if wish.bag is None else _from_bag(asked, wish.bag)
+    check(request)
+    curves = _from_network(requested, request) if request.bag is None else _from_bag(requested, request.bag)
     if not any(curve.values for curve in curves):
         lacked = next((curve.lacked for curve in curves if curve.lacked), "")
         raise PlotError(lacked or f"nothing was heard on {', '.join({curve.topic: None for curve in curves})}")
-    _draw([curve for curve in curves if curve.values], wish)
+    _draw([curve for curve in curves if curve.values], request)
 
 
-def _from_network(asked: list[str], wish: Wish) -> list[Curve]:
+def _from_network(requested: list[str], request: Request) -> list[Curve]:
     """Return the curves of what is published until the time is over."""
     with opened() as context:
         node = node_of(context)
-        until = deadline(wish)
-        curves = [Curve(*_parted(node, each, until)) for each in dict.fromkeys(asked)]
+        until = deadline(request)
+        curves = [Curve(*_parted(node, each, until)) for each in dict.fromkeys(requested)]
         types = {curve.topic: wait_for(context, curve.topic, until) for curve in curves}
         for curve in curves:
             _check_number(types[curve.topic], curve)
-        listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, wish.duration)
+        listen(node, {topic: (types[topic], _all_of(topic, curves)) for topic in types}, request.duration)
     return curves
 
 
-def _from_bag(asked: list[str], bag: Path) -> list[Curve]:
+def _from_bag(requested: list[str], bag: Path) -> list[Curve]:
     """Return the curves of a recording."""
     from robolink.cli.plot.messages import recorded
 
     with recorded(bag) as source:
-        curves = [Curve(*_parted_in(source, each)) for each in dict.fromkeys(asked)]
+        curves = [Curve(*_parted_in(source, each)) for each in dict.fromkeys(requested)]
         types = {curve.topic: source.type_of(curve.topic) for curve in curves}
         for curve in curves:
             _check_number(types[curve.topic], curve)
@@ -98,16 +98,16 @@ def _from_bag(asked: list[str], bag: Path) -> list[Curve]:
     return curves
 
 
-def _parted_in(source: Recorded, asked: str) -> tuple[str, str]:
+def _parted_in(source: Recorded, requested: str) -> tuple[str, str]:
     """Split `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name in the bag."""
-    if "." in asked:
-        topic, _, field = asked.partition(".")
+    if "." in requested:
+        topic, _, field = requested.partition(".")
         return source.name_of(topic), field
-    name, bracket, rest = asked.partition("[")
+    name, bracket, rest = requested.partition("[")
     parts = name.strip("/").split("/")
     topic = next((each for each in _prefixes(parts) if each in source.topics), "")
     if not topic:
-        raise PlotError(f"'{asked}' names no field of a topic in the bag: write TOPIC.FIELD, as in /odom.x")
+        raise PlotError(f"'{requested}' names no field of a topic in the bag: write TOPIC.FIELD, as in /odom.x")
     return topic, ".".join(parts[topic.count("/") :]) + bracket + rest
 
 
@@ -126,13 +126,13 @@ def _all_of(topic: str, curves: Iterable[Curve]) -> Callable[..., None]:
     return take
 
 
-def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
+def _parted(node: Node, requested: str, until: float | None) -> tuple[str, str]:
     """Split `/odom.pose.x` or `/odom/pose/x` into topic and field: the topic is the longest name that is published."""
-    if "." in asked:
-        topic, _, field = asked.partition(".")
+    if "." in requested:
+        topic, _, field = requested.partition(".")
         return node.resolve_topic_name(topic), field
-    parts = node.resolve_topic_name(asked.split("[")[0]).strip("/").split("/")
-    rest = asked[asked.index("[") :] if "[" in asked else ""
+    parts = node.resolve_topic_name(requested.split("[")[0]).strip("/").split("/")
+    rest = requested[requested.index("[") :] if "[" in requested else ""
     prefixes = _prefixes(parts)
 
     def published() -> str:
@@ -145,7 +145,9 @@ def _parted(node: Node, asked: str, until: float | None) -> tuple[str, str]:
         if not node.context.ok():
             raise KeyboardInterrupt
         if until is not None and clocks.monotonic() > until:
-            raise PlotError(f"'{asked}' names no field of a topic that is published: write TOPIC.FIELD, as in /odom.x")
+            raise PlotError(
+                f"'{requested}' names no field of a topic that is published: write TOPIC.FIELD, as in /odom.x"
+            )
         node.context.graph.wait_for(lambda: bool(published()) or not node.context.ok(), 0.5)
     topic = published()
     return topic, ".".join(parts[topic.count("/") :]) + rest
@@ -181,7 +183,7 @@ def _times(curves: list[Curve]) -> list[list[float]]:
     return [curve.arrived for curve in curves]
 
 
-def _draw(curves: list[Curve], wish: Wish) -> None:
+def _draw(curves: list[Curve], request: Request) -> None:
     import matplotlib.pyplot as plt
 
     times = _times(curves)
@@ -195,7 +197,7 @@ def _draw(curves: list[Curve], wish: Wish) -> None:
         axes.legend(frameon=False)
     else:
         axes.set_ylabel(curves[0].name)
-    show(figure, wish)
+    show(figure, request)
     plt.close(figure)
 
 
@@ -253,27 +255,27 @@ class Way:
         return self.points
 
 
-def plot_trajectories(topics: list[str], kind: Kind, world: str, wish: Wish) -> None:
+def plot_trajectories(topics: list[str], kind: Kind, world: str, request: Request) -> None:
     """Listen, or read the bag, and draw the trajectories."""
-    check(wish)
-    if wish.bag is not None:
-        _run_bag(topics, kind, world, wish, wish.bag)
+    check(request)
+    if request.bag is not None:
+        _run_bag(topics, kind, world, request, request.bag)
         return
     if not topics:
         raise PlotError("name the topics to draw, such as /odom, or a bag: --bag FOLDER")
     with opened() as context:
         node = node_of(context)
-        until = deadline(wish)
+        until = deadline(request)
         ways = {name: Way(name, kind) for name in map(node.resolve_topic_name, dict.fromkeys(topics))}
         heard = {name: (_fitting(wait_for(context, name, until), name, kind), ways[name].take) for name in ways}
         description = _world(node, world)
-        listen(node, heard, wish.duration)
+        listen(node, heard, request.duration)
     if not any(way.points for way in ways.values()):
         raise PlotError(f"nothing was heard on {', '.join(ways)}")
-    _draw_trajectories(ways.values(), description, wish)
+    _draw_trajectories(ways.values(), description, request)
 
 
-def _run_bag(topics: list[str], kind: Kind, world: str, wish: Wish, bag: Path) -> None:
+def _run_bag(topics: list[str], kind: Kind, world: str, request: Request, bag: Path) -> None:
     """Draw what a bag has: the topics that are named, or all that say where something is."""
     from robolink.cli.plot.messages import recorded
 
@@ -285,7 +287,7 @@ def _run_bag(topics: list[str], kind: Kind, world: str, wish: Wish, bag: Path) -
         found = f"no message on {', '.join(ways)} has a place" if ways else f"no topic has {kind.expected}"
         raise PlotError(f"{bag}: nothing to draw: {found}")
     description = None if world in ("", NO_WORLD) else _world_named(world)
-    _draw_trajectories(ways.values(), description, wish)
+    _draw_trajectories(ways.values(), description, request)
 
 
 def _all_fitting(source: Recorded, kind: Kind) -> list[str]:
@@ -306,18 +308,18 @@ def _fitting(msg_type: type[Any], topic: str, kind: Kind) -> type[Any]:
     raise PlotError(f"{topic} is of {msg_type.__ros_type__}: expected one with {kind.expected}")
 
 
-def _world(node: Node, asked: str) -> WorldDescription | None:
+def _world(node: Node, requested: str) -> WorldDescription | None:
     """Return the world to draw over: the one that is named, or else the one that the node /world simulates.
 
     Raises what `find_world` and `load_world` raise for a world that was asked for by name.
     """
-    name = "" if asked == NO_WORLD else asked or _simulated(node)
+    name = "" if requested == NO_WORLD else requested or _simulated(node)
     if not name:
         return None
     try:
         return _world_named(name)
     except RobolinkError as error:
-        if asked:
+        if requested:
             raise
         tell(f"robolink: drawn without the world: {error}")
         return None
@@ -350,7 +352,7 @@ def _simulated(node: Node) -> str:
     return answer.values[0].string_value if answer is not None and answer.values else ""
 
 
-def _draw_trajectories(ways: Iterable[Way], world: WorldDescription | None, wish: Wish) -> None:
+def _draw_trajectories(ways: Iterable[Way], world: WorldDescription | None, request: Request) -> None:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(figsize=(7, 7))
@@ -364,7 +366,7 @@ def _draw_trajectories(ways: Iterable[Way], world: WorldDescription | None, wish
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
-    show(figure, wish)
+    show(figure, request)
     plt.close(figure)
 
 

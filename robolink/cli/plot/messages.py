@@ -33,7 +33,7 @@ WINDOW_NEEDED = "there is no screen to open a window on: give --out FILE.png"
 DOTS_PER_INCH = 150
 LEAST_WAIT = 5.0
 """Least time to wait for a publisher, in seconds."""
-TOLD_AFTER = 2.0
+REPORTED_AFTER = 2.0
 """Delay until a note that a topic is waited for, in seconds."""
 
 
@@ -41,7 +41,7 @@ class PlotError(RobolinkError, ValueError):
     """A plot cannot be drawn, shown or written."""
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of a plot: the picture's file (None: a window), the seconds to listen (None: until Ctrl-C), and a bag.
 
     With a bag nothing is listened to.
@@ -52,14 +52,14 @@ class Wish(NamedTuple):
     bag: Path | None = None
 
 
-def check(wish: Wish) -> None:
+def check(request: Request) -> None:
     """Raise `PlotError` or `DrawingError`, before any listening, if the picture could not be made in the end."""
-    if wish.out is None:
+    if request.out is None:
         _check_window()
         return
-    if not wish.out.absolute().parent.is_dir():
-        raise PlotError(f"no folder '{wish.out.absolute().parent}' to write '{wish.out.name}' to")
-    check_picture(wish.out)
+    if not request.out.absolute().parent.is_dir():
+        raise PlotError(f"no folder '{request.out.absolute().parent}' to write '{request.out.name}' to")
+    check_picture(request.out)
 
 
 def _check_window() -> None:
@@ -76,9 +76,9 @@ def _check_window() -> None:
         raise PlotError(WINDOW_NEEDED)
 
 
-def deadline(wish: Wish) -> float | None:
+def deadline(request: Request) -> float | None:
     """Return the moment (of `clocks.monotonic`) until which there must be a publisher; None for no limit."""
-    return None if wish.duration is None else clocks.monotonic() + max(wish.duration, LEAST_WAIT)
+    return None if request.duration is None else clocks.monotonic() + max(request.duration, LEAST_WAIT)
 
 
 def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
@@ -86,7 +86,7 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
 
     Raises `PlotError` if there is none until `deadline` (of `clocks.monotonic`), and KeyboardInterrupt.
     """
-    graph, begin, told = context.graph, clocks.monotonic(), False
+    graph, begin, reported = context.graph, clocks.monotonic(), False
 
     def published() -> bool:
         return bool(graph.endpoints(EndpointKind.PUBLISHER, name=topic)) or not context.ok()
@@ -99,9 +99,9 @@ def wait_for(context: Context, topic: str, deadline: float | None) -> type[Any]:
             near = nearest(topic, {each.name for each in graph.endpoints(EndpointKind.PUBLISHER)})
             raise PlotError(f"nobody publishes {topic}{near}: see `robolink topic list`")
         graph.wait_for(published, min(0.5, left) if left is not None else 0.5)
-        if not told and clocks.monotonic() - begin > TOLD_AFTER:
+        if not reported and clocks.monotonic() - begin > REPORTED_AFTER:
             tell(f"waiting for somebody to publish {topic}")
-            told = True
+            reported = True
     if not context.ok():
         raise KeyboardInterrupt
     return message_type(context, topic)
@@ -127,14 +127,14 @@ def listen(node: Node, topics: Mapping[str, tuple[type[Any], Callable[[Any], Any
             tell("")
 
 
-def show(figure: Figure, wish: Wish) -> None:
+def show(figure: Figure, request: Request) -> None:
     """Write the picture to its file, or show it in a window until that is closed."""
-    if wish.out is not None:
+    if request.out is not None:
         try:
-            figure.savefig(wish.out, dpi=DOTS_PER_INCH, bbox_inches="tight")
+            figure.savefig(request.out, dpi=DOTS_PER_INCH, bbox_inches="tight")
         except OSError as error:
-            raise PlotError(f"{wish.out}: cannot be written: {error.strerror or error}") from None
-        tell(f"wrote {wish.out}")
+            raise PlotError(f"{request.out}: cannot be written: {error.strerror or error}") from None
+        tell(f"wrote {request.out}")
         return
     import matplotlib.pyplot as plt
 
@@ -161,9 +161,9 @@ class Recorded:
         """Names of the topics that have messages."""
         return [name for name in self._topics if self._bag.counts.get(name)]
 
-    def name_of(self, asked: str) -> str:
+    def name_of(self, requested: str) -> str:
         """Return the full name of a topic. Raises PlotError if the bag does not have it."""
-        name = "/" + asked.lstrip("/")
+        name = "/" + requested.lstrip("/")
         if name not in self._topics:
             known = ", ".join(self.topics[:10])
             raise PlotError(f"{self._bag.path} has no topic {name}{nearest(name, self._topics)}; it has {known}")

@@ -189,13 +189,13 @@ def _is_open(node: Node) -> bool:
 
 def _without(args: Sequence[str], name: str) -> list[str]:
     """Return the arguments without the parameter of that name."""
-    kept: list[str] = []
+    without: list[str] = []
     rest, flags = iter(args), ("-p", WIDE_PARAMETER)
     for each in rest:
         value = next(rest, "") if each in flags else ""
         if not value.startswith(f"{name}:="):
-            kept += [each, value] if each in flags else [each]
-    return kept
+            without += [each, value] if each in flags else [each]
+    return without
 
 
 def _words(error: BaseException, source: NodeSource | None = None) -> str:

@@ -13,7 +13,7 @@ from robolink.system.processes import own_command, split_words
 
 
 class PrefixError(RobolinkError, ValueError):
-    """A prefix that is no command line."""
+    """A prefix that is not a command line."""
 
 
 def command_line(prefix: str, words: Sequence[str]) -> list[str]:

@@ -139,8 +139,8 @@ def found(command: NodeCommand, workspace: str | None) -> tuple[NodeSource, list
         alone = program(name, name)  # rviz2 and rqt are programs, and packages
         if alone is not None and folder is None:
             return alone, words
-        asked = words[0] if command.before > 0 else ""
-        error = _lacking(name, asked, folder, workspace)
+        requested = words[0] if command.before > 0 else ""
+        error = _lacking(name, requested, folder, workspace)
         if error is None:
             raise
         raise error from None
@@ -152,18 +152,18 @@ def _tell_of_unnamed(source: NodeSource) -> None:
     complain(f"setup.py does not name '{source.name}', so ROS 2 will not find it: add {entry} to its console_scripts")
 
 
-def _lacking(name: str, asked: str, folder: Path | None, workspace: str | None) -> RobolinkError | None:
+def _lacking(name: str, requested: str, folder: Path | None, workspace: str | None) -> RobolinkError | None:
     """Return the error for a name that is not a node's; None if there is nothing to add to that.
 
-    `asked` is the word after it, '' if there is none; `folder` is that of the user's own package of this name.
+    `requested` is the word after it, '' if there is none; `folder` is that of the user's own package of this name.
     """
     if not canonical(name).isidentifier():
         return _other_kind(name, workspace)
-    if folder is None and not asked and not programs_of(name) and (advice := instead_of(name)):
+    if folder is None and not requested and not programs_of(name) and (advice := instead_of(name)):
         return RosProgramError(name, "", advice)
     known = [*(each.name for each in (named_executables(folder) if folder is not None else ())), *programs_of(name)]
-    if asked:
-        error = lacking_executable(name, asked, folder) or (None if folder else _neither(name, workspace))
+    if requested:
+        error = lacking_executable(name, requested, folder) or (None if folder else _neither(name, workspace))
         return error or _other_kind(name, workspace)
     if not known:
         return _other_kind(name, workspace)
@@ -176,7 +176,7 @@ def _other_kind(name: str, workspace: str | None) -> RobolinkError | None:
 
 
 def _meant_command(name: str, workspace: str | None) -> str:
-    """Return what else a name stands for, with the command for it; an empty text if it is unknown."""
+    """Return the other thing that a name stands for, with the command for it; an empty text if it is unknown."""
     with contextlib.suppress(NotFoundError):
         if not _is_world(find_launch(name, workspace=workspace)):
             return f"a launch file, and no node: robolink launch {name}"

@@ -56,9 +56,9 @@ def fork_server(descriptor: int) -> int:
 
         import robolink.transport.secured  # noqa: F401
     runner.prepare_types()
-    asked = shortcut(fork_server.serve(descriptor))
-    assert asked is not None, "a launcher asks for what it would run itself"
-    return asked()
+    requested = shortcut(fork_server.serve(descriptor))
+    assert requested is not None, "a launcher asks for what it would run itself"
+    return requested()
 
 
 def look_into() -> NoReturn:

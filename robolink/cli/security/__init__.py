@@ -92,9 +92,12 @@ def make_class(
     if not students and not turn:
         raise typer.BadParameter("name --students N, or --turn STUDENT")
     topics = classroom.topics_of(see or classroom.SEEN, drive or classroom.DRIVEN)
-    asked = domain_id(os.environ)
-    if (domain := classroom.domain_of(folder, asked)) != asked and os.environ.get("ROS_DOMAIN_ID"):
-        tell(f"{folder} keeps its domain, {domain}; ROS_DOMAIN_ID is {asked}. Another domain needs a class of its own")
+    requested = domain_id(os.environ)
+    if (domain := classroom.domain_of(folder, requested)) != requested and os.environ.get("ROS_DOMAIN_ID"):
+        tell(
+            f"{folder} keeps its domain, {domain}; ROS_DOMAIN_ID is {requested}."
+            " Another domain needs a class of its own"
+        )
     if students:
         made = classroom.make(folder, students, topics, domain)
         say(f"{folder}: folders for the robot, the teacher, a router and {students} students: {made[3]} ...")

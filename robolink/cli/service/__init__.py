@@ -127,10 +127,10 @@ def call_service(
         type_, values = "", type_
     if from_stdin and values:
         ctx.fail("either VALUES or --stdin, not both")
-    manner = verbs.Manner(rate, timeout, as_json, node_name)
-    if manner.problem():
-        ctx.fail(manner.problem())
-    verbs.call(service, type_, read_stdin("request") if from_stdin else values or "", manner)
+    mode = verbs.Mode(rate, timeout, as_json, node_name)
+    if mode.problem():
+        ctx.fail(mode.problem())
+    verbs.call(service, type_, read_stdin("request") if from_stdin else values or "", mode)
 
 
 @app.command("echo")

@@ -108,7 +108,7 @@ class CallError(RobolinkError, RuntimeError):
     """A call cannot be made, or was not answered."""
 
 
-class Manner(NamedTuple):
+class Mode(NamedTuple):
     """Options of `service call`: how often, and how long an answer may take."""
 
     rate: float | None = None
@@ -119,7 +119,7 @@ class Manner(NamedTuple):
     node_name: str = ""
 
     def problem(self) -> str:
-        """Return what is wrong with these options; empty if nothing is."""
+        """Return the error of these options; empty if there is none."""
         if self.rate is not None and not 1e-9 <= self.rate < float("inf"):
             return f"--rate: expected a number of Hz above 0, got {self.rate:g}"
         if not 0 < self.timeout <= 1e9:
@@ -127,7 +127,7 @@ class Manner(NamedTuple):
         return ""
 
 
-def call(service: str, type_: str, values: str, manner: Manner) -> None:
+def call(service: str, type_: str, values: str, mode: Mode) -> None:
     """Call a service once, or at a rate until Ctrl-C.
 
     Raises CallError if there is no answer in time, ServiceError if the server goes away or its answer cannot be
@@ -136,32 +136,32 @@ def call(service: str, type_: str, values: str, manner: Manner) -> None:
     with opened() as context:
         from robolink.executors import SingleThreadedExecutor
 
-        node = node_of(context, manner.node_name)
+        node = node_of(context, mode.node_name)
         given = GivenRequest(node.resolve_service_name(service), type_, values)
-        deadline = clocks.monotonic() + manner.timeout
-        srv_type = _wait_for_type(context, given, manner, deadline)
+        deadline = clocks.monotonic() + mode.timeout
+        srv_type = _wait_for_type(context, given, mode, deadline)
         request = message_of(srv_type.Request, values)
         client = node.create_client(srv_type, given.name)
         executor = SingleThreadedExecutor(context=context)
         executor.add_node(node)
         while True:
             began = clocks.monotonic()
-            _call(client, executor, request, manner, deadline)
-            if manner.rate is None:
+            _call(client, executor, request, mode, deadline)
+            if mode.rate is None:
                 return
-            _sleep(executor, began + 1.0 / manner.rate)
-            deadline = clocks.monotonic() + manner.timeout
+            _sleep(executor, began + 1.0 / mode.rate)
+            deadline = clocks.monotonic() + mode.timeout
 
 
-def _wait_for_type(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> type[Any]:
+def _wait_for_type(context: Context, given: GivenRequest, mode: Mode, deadline: float) -> type[Any]:
     """Wait until the service is there, with the type that is named, if one is; return its class."""
     from robolink.cli.shared.messages import service_type
 
     if not _served(context, given):
         _check_early(given)
-        if not manner.json:
+        if not mode.json:
             say("waiting for service to become available...")
-        _wait(context, given, manner, deadline)
+        _wait(context, given, mode, deadline)
     return service_type(context, given.name, given.type_)
 
 
@@ -177,12 +177,12 @@ def _served(context: Context, given: GivenRequest) -> bool:
     return any(not given.type_ or is_named(each.type_name, given.type_) for each in servers)
 
 
-def _wait(context: Context, given: GivenRequest, manner: Manner, deadline: float) -> None:
+def _wait(context: Context, given: GivenRequest, mode: Mode, deadline: float) -> None:
     patience = clocks.monotonic() + PATIENCE
     while not context.graph.wait_for(lambda: _served(context, given) or not context.ok(), _SLICE):
         now = clocks.monotonic()
         if now >= deadline:
-            raise CallError(f"gave up after {manner.timeout:g} s: {_why_absent(context, given)}")
+            raise CallError(f"gave up after {mode.timeout:g} s: {_why_absent(context, given)}")
         if now >= patience:
             patience = float("inf")
             tell(f"waiting: {_why_absent(context, given)}")
@@ -201,8 +201,8 @@ def _why_absent(context: Context, given: GivenRequest) -> str:
     return f"nobody serves {given.name} on domain {context.get_domain_id()}{elsewhere}{near}"
 
 
-def _call(client: Client, executor: Executor, request: Any, manner: Manner, deadline: float) -> None:
-    if not manner.json:
+def _call(client: Client, executor: Executor, request: Any, mode: Mode, deadline: float) -> None:
+    if not mode.json:
         say(f"requester: making request: {request!r}\n")
     future = client.try_call_async(request)
     _spin(executor, future, min(PATIENCE, deadline - clocks.monotonic()))
@@ -211,9 +211,9 @@ def _call(client: Client, executor: Executor, request: Any, manner: Manner, dead
         _spin(executor, future, deadline - clocks.monotonic())
     if not future.done():
         client.remove_pending_request(future)
-        raise CallError(f"no answer within {manner.timeout:g} s from {_server_of(executor, client)}")
+        raise CallError(f"no answer within {mode.timeout:g} s from {_server_of(executor, client)}")
     response = future.result()
-    if manner.json:
+    if mode.json:
         say(messages.as_json({"request": messages.plain(request), "response": messages.plain(response)}))
     else:
         say(f"response:\n{response!r}\n")

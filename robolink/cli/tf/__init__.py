@@ -29,7 +29,7 @@ def echo_transform(
     """Print the transform between two frames, as tf2_echo does: the pose of TARGET_FRAME in SOURCE_FRAME."""
     from robolink.cli.tf import watch
 
-    watch.echo(source, target, watch.Wish(rate, once, timeout, as_json))
+    watch.echo(source, target, watch.Request(rate, once, timeout, as_json))
 
 
 @app.command("monitor")

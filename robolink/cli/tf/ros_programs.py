@@ -33,7 +33,7 @@ def tf2_echo() -> None:
         raise UsageError(f"expected two frames and perhaps a rate, got {len(words)} words: {ECHO_USAGE}")
     rate = _number("RATE", words[2]) if len(words) == 3 else 1.0
     with contextlib.suppress(BrokenPipeError):  # `| head` has enough: no error of this program
-        watch.echo(words[0], words[1], watch.Wish(rate))
+        watch.echo(words[0], words[1], watch.Request(rate))
 
 
 def tf2_monitor() -> None:

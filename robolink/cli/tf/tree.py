@@ -93,8 +93,8 @@ def problems(found: dict[str, Node], links: list[Seen]) -> Iterator[str]:
         own = [each for each in links if each.child == child]
         parents = {each.parent: each.sender for each in own}
         if len(parents) > 1:
-            told = " and ".join(f"'{shown(parent)}' (from {sender})" for parent, sender in parents.items())
-            yield f"'{shown(child)}' has {len(parents)} parents: {told}: lookups jump between them"
+            reported = " and ".join(f"'{shown(parent)}' (from {sender})" for parent, sender in parents.items())
+            yield f"'{shown(child)}' has {len(parents)} parents: {reported}: lookups jump between them"
         elif len(node.senders) > 1:
             yield f"'{shown(child)}' is published by {' and '.join(node.senders)}: they overwrite each other"
         if len({each.static for each in own}) > 1:

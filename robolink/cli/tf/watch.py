@@ -54,9 +54,9 @@ class Seen:
 
     def add(self, stamp: int, now: int) -> None:
         """Record a transform."""
-        for kept, new in ((self.stamps, stamp), (self.arrivals, now)):
-            kept.append(new)
-            del kept[:-LAST]
+        for stored, new in ((self.stamps, stamp), (self.arrivals, now)):
+            stored.append(new)
+            del stored[:-LAST]
 
     def add_earlier(self, other: Seen) -> None:
         """Merge the records of another link, which turned out to be the same."""
@@ -181,7 +181,7 @@ class RateError(RobolinkError, ValueError):
     """The rate is not a positive number."""
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of `tf echo`: how often, and until when."""
 
     rate: float = 1.0
@@ -226,23 +226,23 @@ class Found(NamedTuple):
         }
 
 
-def echo(source: str, target: str, wish: Wish) -> None:
+def echo(source: str, target: str, request: Request) -> None:
     """Show where a frame is in another, until Ctrl-C; raises NoTransformsError when --timeout passes before."""
-    if not (math.isfinite(wish.rate) and wish.rate > 0):
-        raise RateError(f"RATE: expected a number of Hz above 0, got {wish.rate:g}")
+    if not (math.isfinite(request.rate) and request.rate > 0):
+        raise RateError(f"RATE: expected a number of Hz above 0, got {request.rate:g}")
     with opened() as context:
         watch = Watch(node_of(context))
-        _wait(watch, source, target, wish.timeout)
+        _wait(watch, source, target, request.timeout)
         while True:
-            _show(watch, source, target, json=wish.json)
-            if wish.once:
+            _show(watch, source, target, json=request.json)
+            if request.once:
                 return
-            watch.listen(1.0 / wish.rate)
+            watch.listen(1.0 / request.rate)
 
 
 def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None:
     """Wait for the first transform; print after a second why there is none, again if the reason changes."""
-    begin, told = clocks.monotonic(), ""
+    begin, reported = clocks.monotonic(), ""
     came: Future[None] = Future()
 
     def look() -> None:
@@ -256,9 +256,9 @@ def _wait(watch: Watch, source: str, target: str, timeout: float | None) -> None
             raise NoTransformsError(f"gave up after {timeout:g} s: {why_not(watch, source, target)}")
         watch.listen(min(PATIENCE, left), came)
         why = why_not(watch, source, target)
-        if why not in ("", told) and left > PATIENCE:
+        if why not in ("", reported) and left > PATIENCE:
             tell(why if why.startswith("waiting") else f"waiting: {why}")
-            told = why
+            reported = why
     watch.on_news = None
 
 

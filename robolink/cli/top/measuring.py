@@ -211,7 +211,7 @@ class Processes:
         self._processes: dict[int, psutil.Process] = {}
 
     def look(self, sessions: Mapping[str, Sequence[str]]) -> dict[str, Usage]:
-        """Return what the sessions of this machine use, by session.
+        """Return the use of processor and memory of the sessions of this machine, by session.
 
         Args:
             sessions: Full names of the nodes of each session.
@@ -236,7 +236,7 @@ class Processes:
         return found
 
     def _used(self, pid: int) -> Usage | None:
-        """Return what a process uses; None if it has ended."""
+        """Return the use of processor and memory of a process; None if it has ended."""
         try:
             process = self._processes.get(pid)
             if process is None:
@@ -352,7 +352,7 @@ class Meter:
         return rows
 
     def _reported_by_topic(self) -> Counter[str]:
-        """Return what the subscriptions that are there now have lost, by topic."""
+        """Return the losses of the present subscriptions, by topic."""
         found: Counter[str] = Counter()
         for gid, losses in self._reported.look().items():
             token = self._graph.endpoint_of(gid)

@@ -136,7 +136,7 @@ class Leniently:
 
     def __init__(self, passes: Callable[[Any], bool]) -> None:
         self._passes = passes
-        self._told = False
+        self._reported = False
 
     def __call__(self, message: Any) -> bool:
         """Return True if a message passes."""
@@ -155,8 +155,8 @@ class Leniently:
             return None
 
     def _tell(self, text: str) -> None:
-        if not self._told:
-            self._told = True
+        if not self._reported:
+            self._reported = True
             tell(f"robolink: {text}")
 
 

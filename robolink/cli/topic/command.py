@@ -128,7 +128,7 @@ def echo_messages(
 ) -> None:
     """Print the messages of a topic, until Ctrl-C."""
     from robolink.cli.shared.messages import Style
-    from robolink.cli.topic.echo import Format, Wish, run
+    from robolink.cli.topic.echo import Format, Request, run
 
     opt.refuse_together(ctx, {"--csv": csv, "--json": as_json, "--raw": raw, "--image": image})
     opt.refuse_together(ctx, {"--raw": raw, "--field or --filter": field or filter_})
@@ -138,8 +138,8 @@ def echo_messages(
         check_terminal(sys.stdout.isatty())
     flags = opt.flags_of(ctx.params)
     style = Style(None if full_length else length, not no_arr, not no_str, flow)
-    wish = Wish(type_, once, timeout, filter_, not no_lost, node_name, flags)
-    run(topic, wish, Format(field, style, as_json, csv, raw, info, clear or image, image))
+    request = Request(type_, once, timeout, filter_, not no_lost, node_name, flags)
+    run(topic, request, Format(field, style, as_json, csv, raw, info, clear or image, image))
 
 
 @app.command("pub")
@@ -167,12 +167,12 @@ def publish(
     qos_lease: opt.Lease = None,
 ) -> None:
     """Publish messages to a topic, until Ctrl-C. `header: auto` and `stamp: now` become the time of sending."""
-    from robolink.cli.topic.pub import Wish, run
+    from robolink.cli.topic.pub import Request, run
 
     if values is None and opt.are_values(type_):
         type_, values = "", type_
     opt.refuse_together(ctx, {"--stdin": stdin, "VALUES": values is not None})
     opt.refuse_together(ctx, {"--once": once, "--times": times})
     flags = opt.flags_of(ctx.params)
-    wish = Wish(rate, 1 if once else times, wait, max_wait, keep_alive, print_every, node_name, flags, sim_time)
-    run(topic, type_, None if stdin else values or "{}", wish)
+    request = Request(rate, 1 if once else times, wait, max_wait, keep_alive, print_every, node_name, flags, sim_time)
+    run(topic, type_, None if stdin else values or "{}", request)

@@ -47,22 +47,22 @@ class Format(NamedTuple):
     def text(self, message: Any, info: MessageInfo) -> str:
         """Return a message as text. `info` comes first if it is wanted, in ros2's order."""
         value = messages.field_of(message, self.field) if self.field else message
-        told = {name: each for name, each in info.items() if name != "publisher_gid"}
+        reported = {name: each for name, each in info.items() if name != "publisher_gid"}
         if self.image:
             from robolink.cli.shared.picture import drawn
 
             return drawn(value)
         if self.json:
-            return messages.as_json({"info": told, "message": value} if self.info else value)
+            return messages.as_json({"info": reported, "message": value} if self.info else value)
         if self.csv:
-            before = [str(each) for each in told.values()] if self.info else []
+            before = [str(each) for each in reported.values()] if self.info else []
             return ",".join([*before, messages.as_csv(value, self.style)])
         shown = repr(value) if self.raw else messages.as_yaml(value, self.style)
-        before = [messages.as_yaml(dict(sorted(told.items())))] if self.info else []
+        before = [messages.as_yaml(dict(sorted(reported.items())))] if self.info else []
         return "\n---\n".join([*before, shown, ""]).removesuffix("\n")
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of `topic echo`: what to listen to, and until when."""
 
     type_name: str = ""
@@ -75,18 +75,18 @@ class Wish(NamedTuple):
     qos: QoSFlags = QoSFlags()
 
 
-def run(topic: str, wish: Wish, form: Format) -> None:
+def run(topic: str, request: Request, form: Format) -> None:
     """Show what is published on a topic; one message if `once`, else until Ctrl-C or the timeout."""
     begin = clocks.monotonic()
     with opened() as context:
-        node = node_of(context, wish.node_name)
+        node = node_of(context, request.node_name)
         name = node.resolve_topic_name(topic)
-        told = wish.type_name == "" and _wait_for_topic(context, name, wish.timeout)
-        msg_type = message_type(context, name, wish.type_name)
-        passes = _passes(msg_type, form, wish.filter)
-        left = None if wish.timeout is None else max(wish.timeout - (clocks.monotonic() - begin), 0.0)
-        if not _Echo(node, name, msg_type, wish, form, passes).run(left, told) and wish.timeout is not None:
-            raise NothingCameError(f"no message on {name} within {wish.timeout:g} s")
+        reported = request.type_name == "" and _wait_for_topic(context, name, request.timeout)
+        msg_type = message_type(context, name, request.type_name)
+        passes = _passes(msg_type, form, request.filter)
+        left = None if request.timeout is None else max(request.timeout - (clocks.monotonic() - begin), 0.0)
+        if not _Echo(node, name, msg_type, request, form, passes).run(left, reported) and request.timeout is not None:
+            raise NothingCameError(f"no message on {name} within {request.timeout:g} s")
 
 
 def _passes(msg_type: type[Any], form: Format, text: str) -> Callable[[Any], bool]:
@@ -110,17 +110,17 @@ class _Echo:
         node: Node,
         name: str,
         msg_type: type[Any],
-        wish: Wish,
+        request: Request,
         form: Format,
         passes: Callable[[Any], bool],
     ) -> None:
         self.node, self.name, self.msg_type = node, name, msg_type
-        self.wish, self.form, self.passes = wish, form, passes
+        self.request, self.form, self.passes = request, form, passes
         self.first, self.done = Future[None](), Future[None]()
         self.shown = 0
-        self.qos = wish.qos.over("sensor_data") if wish.qos.given else matching_qos(node.context, name)
+        self.qos = request.qos.over("sensor_data") if request.qos.given else matching_qos(node.context, name)
 
-    def run(self, timeout: float | None, told: bool) -> int:
+    def run(self, timeout: float | None, reported: bool) -> int:
         """Show messages until the end, and return how many were shown."""
         end = None if timeout is None else clocks.monotonic() + timeout
         # Why nothing comes is told here, in this command's words.
@@ -130,7 +130,7 @@ class _Echo:
         )
         with SingleThreadedExecutor(context=self.node.context) as executor:
             executor.add_node(self.node)
-            if not told:
+            if not reported:
                 patience = PATIENCE if timeout is None else min(PATIENCE, timeout)
                 executor.spin_until_future_complete(self.first, timeout_sec=patience)
                 if not self.first.done() and patience == PATIENCE:
@@ -160,19 +160,19 @@ class _Echo:
                 self.shown += 1
         except (RobolinkError, OSError) as error:
             self.done.set_exception(error)
-        if self.wish.once and self.shown and not self.done.done():
+        if self.request.once and self.shown and not self.done.done():
             self.done.set_result(None)
 
     def on_lost(self, info: QoSMessageLostInfo) -> None:
         """Report messages that were lost."""
-        if self.wish.lost:
+        if self.request.lost:
             change, total = info.total_count_change, info.total_count
             tell(f"A message was lost!!!\n\ttotal count change:{change}\n\ttotal count: {total}")
 
 
 def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
     """Wait until the topic has an endpoint; return True if the reason for the wait was printed."""
-    begin, told = clocks.monotonic(), False
+    begin, reported = clocks.monotonic(), False
 
     def known() -> bool:
         return bool(context.graph.endpoints(EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, name=name))
@@ -185,7 +185,7 @@ def _wait_for_topic(context: Context, name: str, timeout: float | None) -> bool:
             raise KeyboardInterrupt
         left = PATIENCE if timeout is None else min(PATIENCE, timeout - spent)
         # Never without a limit: on Windows Ctrl-C does not end a wait.
-        if not context.graph.wait_for(lambda: known() or not context.ok(), left) and not told and left == PATIENCE:
+        if not context.graph.wait_for(lambda: known() or not context.ok(), left) and not reported and left == PATIENCE:
             tell(graph.why_silent(context, name))
-            told = True
-    return told
+            reported = True
+    return reported

@@ -146,7 +146,7 @@ def _details(ends: list[EndpointToken]) -> dict[str, Any]:
 
 
 def _losses(context: Context) -> dict[bytes, Losses]:
-    """Return what subscriptions have lost, as far as their nodes report it."""
+    """Return the losses of subscriptions, as far as their nodes report them."""
     with contextlib.closing(ReportedLosses(context)) as reported:
         return reported.look(LOSSES_WITHIN)
 

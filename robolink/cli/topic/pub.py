@@ -105,7 +105,7 @@ class MatchTimeoutError(RobolinkError, TimeoutError):
     """The time of --max-wait-time-secs passed before there were enough subscriptions."""
 
 
-class Wish(NamedTuple):
+class Request(NamedTuple):
     """Options of `topic pub`: how often, how long, and for how many subscriptions."""
 
     rate: float = 1.0
@@ -122,29 +122,29 @@ class Wish(NamedTuple):
     sim_time: bool = False
 
 
-def run(topic: str, type_name: str, values: str | None, wish: Wish) -> None:
+def run(topic: str, type_name: str, values: str | None, request: Request) -> None:
     """Publish the messages in `values`, or on standard input if that is None, in turn."""
-    if not LOWEST_RATE <= wish.rate < float("inf"):
-        raise PublishError(f"--rate: expected a number of Hz above 0, got {wish.rate:g}")
-    wait = (1 if wish.times else 0) if wish.wait is None else wish.wait
-    if wish.max_wait is not None and not wait:
+    if not LOWEST_RATE <= request.rate < float("inf"):
+        raise PublishError(f"--rate: expected a number of Hz above 0, got {request.rate:g}")
+    wait = (1 if request.times else 0) if request.wait is None else request.wait
+    if request.max_wait is not None and not wait:
         raise PublishError("--max-wait-time-secs only says something with --wait-matching-subscriptions, -1 or --times")
     documents = [parse(values, name="<values>")] if values is not None else list(documents_of(read_input()))
     with opened() as context:
-        node = node_of(context, wish.node_name, describes=True)
+        node = node_of(context, request.node_name, describes=True)
         name = node.resolve_topic_name(topic)
         msg_type = _type_of(context, name, type_name)
         messages = [Stamped(msg_type, each) for each in documents]
-        if wish.sim_time:
+        if request.sim_time:
             _follow_clock(node)
         # The event does nothing but end a turn of the executor: somebody has come.
         events = PublisherEventCallbacks(matched=lambda _: None)
-        publisher = node.create_publisher(msg_type, name, wish.qos.over("default"), event_callbacks=events)
+        publisher = node.create_publisher(msg_type, name, request.qos.over("default"), event_callbacks=events)
         with SingleThreadedExecutor(context=context) as executor:
             executor.add_node(node)
-            _wait(executor, publisher, wait, wish.max_wait)
+            _wait(executor, publisher, wait, request.max_wait)
             say("publisher: beginning loop")
-            _loop(node, executor, publisher, messages, wish)
+            _loop(node, executor, publisher, messages, request)
 
 
 def read_input() -> str:
@@ -197,23 +197,23 @@ def _wait(executor: Executor, publisher: Publisher[Any], count: int, longest: fl
                 f" {publisher.topic_name} with type {publisher.msg_type.__ros_type__}"
             )
         say(f"Waiting for at least {count} matching subscription(s)...")
-        told = clocks.monotonic()
-        until = told + 1.0 if end is None else min(end, told + 1.0)
+        reported = clocks.monotonic()
+        until = reported + 1.0 if end is None else min(end, reported + 1.0)
         while publisher.get_subscription_count() < count and clocks.monotonic() < until:
             executor.spin_once(timeout_sec=max(0.0, until - clocks.monotonic()))
 
 
-def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: list[Stamped], wish: Wish) -> None:
+def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: list[Stamped], request: Request) -> None:
     serial, turn, done = itertools.count(1), itertools.cycle(messages), Future[None]()
     clock = node.get_clock()
 
     def send() -> None:
         number, each = next(serial), next(turn)
         each.stamp(clock.now())
-        if wish.print_every and number % wish.print_every == 0:
+        if request.print_every and number % request.print_every == 0:
             say(f"publishing #{number}: {each.message!r}\n")
         publisher.publish(each.message)
-        if number == wish.times:
+        if number == request.times:
             done.set_result(None)
 
     def send_again() -> None:
@@ -226,7 +226,7 @@ def _loop(node: Node, executor: Executor, publisher: Publisher[Any], messages: l
 
     send()
     if not done.done():
-        node.create_timer(1.0 / wish.rate, send_again)
+        node.create_timer(1.0 / request.rate, send_again)
         executor.spin_until_future_complete(done)
         done.result()
-    executor.spin_until_future_complete(Future(), timeout_sec=wish.keep_alive)
+    executor.spin_until_future_complete(Future(), timeout_sec=request.keep_alive)

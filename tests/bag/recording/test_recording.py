@@ -205,7 +205,7 @@ def test_a_pause_lets_messages_pass_but_not_what_is_latched(made: Made, talker: 
     plain.publish(Int32(data=1))
     for number in range(5):
         latched.publish(Int32(data=number))
-    wait_until(lambda: len(recording._listener.topics["/latched"].kept or ()) == 2)
+    wait_until(lambda: len(recording._listener.topics["/latched"].retained or ()) == 2)
     recording.toggle_paused()
     made.bag.wait_for("/latched", 2)
     plain.publish(Int32(data=2))

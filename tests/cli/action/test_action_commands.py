@@ -123,7 +123,7 @@ def test_a_reader_that_goes_away_cancels_the_goal_too(sums: Sums, monkeypatch: p
 
     when_said(monkeypatch, verbs, "say", vanish)
     with pytest.raises(BrokenPipeError):
-        verbs.run("/lab/sums", "", "order: -1", verbs.Manner())
+        verbs.run("/lab/sums", "", "order: -1", verbs.Mode())
     assert sums.canceled.wait(PATIENCE)
 
 

@@ -139,8 +139,8 @@ def test_a_key_that_rosbag2_ignores_is_told(capsys: Captured) -> None:
     write(Path("old"), MESSAGES)
     Path("out.yaml").write_text("output_bags: [{uri: new, all_topics: true, all_topic: true}]")
     assert main(["bag", "convert", "-i", "old", "-o", "out.yaml"]) == 0
-    told = "output_bags[0].all_topic: unknown key 'all_topic' (did you mean 'all_topics'?): ignored"
-    assert f"robolink: out.yaml:1:44: {told}\n" in capsys.readouterr().err
+    reported = "output_bags[0].all_topic: unknown key 'all_topic' (did you mean 'all_topics'?): ignored"
+    assert f"robolink: out.yaml:1:44: {reported}\n" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

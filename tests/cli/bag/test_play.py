@@ -174,7 +174,7 @@ def test_ros2s_flags_become_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         " --progress-bar-update-rate 0 --progress-bar-separation-lines 2 --read-ahead-queue-size 7 --log-level warn"
     )
     assert main(["bag", "play", *words.split()]) == 0
-    ((paths, settings, wish),) = ran
+    ((paths, settings, request),) = ran
     assert paths == ["a", "b", "c"]
     assert settings.selection.topics == ("/scan", "/odom")
     assert settings.selection.services == ("/set",)
@@ -186,7 +186,7 @@ def test_ros2s_flags_become_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: 
     assert (settings.duration, settings.until, settings.start_paused) == (5.0, 7_500_000_000, True)
     assert (settings.clock_rate, settings.clock_topics) == (40.0, frozenset({"/scan"}))
     assert (settings.order, settings.read_ahead, settings.service_requests) == ("sent", 7, "service_introspection")
-    assert wish == player_command.Wish("rosbag2_player", "warn", False, 0.0, ("/a:=/b", "/c:=/d"))
+    assert request == player_command.Request("rosbag2_player", "warn", False, 0.0, ("/a:=/b", "/c:=/d"))
 
 
 @pytest.mark.parametrize(

@@ -118,8 +118,8 @@ def test_lists_of_names_follow_their_flags_and_the_figures_are_json(
 
 def test_the_services_of_rosbag2_control_it(robot: Node) -> None:
     count = robot.create_publisher(Int32, "/count", 10)
-    told: list[WriteSplitEvent] = []
-    robot.create_subscription(WriteSplitEvent, "/events/write_split", told.append, 10)
+    reported: list[WriteSplitEvent] = []
+    robot.create_subscription(WriteSplitEvent, "/events/write_split", reported.append, 10)
     with recording(robot, "/count -o bag --start-paused") as run:
         subscribed(count)
         assert run.call(IsPaused, "is_paused").paused
@@ -130,14 +130,14 @@ def test_the_services_of_rosbag2_control_it(robot: Node) -> None:
         wait_until(lambda: counts("bag"))
         run.call(SplitBagfile, "split_bagfile")
         count.publish(Int32(data=3))
-        wait_until(lambda: told)
+        wait_until(lambda: reported)
         wait_until(lambda: counts("bag") == {"/count": 2})
         run.call(Pause, "pause")
         count.publish(Int32(data=4))
         assert run.stop() == 0
     assert counts("bag") == {"/count": 2}
     assert sorted(each.name for each in Path("bag").iterdir()) == ["bag_0.mcap", "bag_1.mcap", "metadata.yaml"]
-    (event,) = told
+    (event,) = reported
     assert (Path(event.closed_file).name, Path(event.opened_file).name) == ("bag_0.mcap", "bag_1.mcap")
     assert event.node_name == "/rosbag2_recorder"
 

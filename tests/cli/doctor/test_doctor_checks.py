@@ -210,7 +210,7 @@ def test_the_rendezvous_is_not_judged_where_it_is_not_used() -> None:
     [
         ({}, OK, "no ROS 2 router"),
         ({7447: Port(7447, port_probe.ROUTER)}, OK, "a ROS 2 router answers"),
-        ({7447: Port(7447, port_probe.PEER)}, ERROR, "which is no router"),
+        ({7447: Port(7447, port_probe.PEER)}, ERROR, "which is not a router"),
         ({7447: Port(7447, port_probe.SILENT)}, ERROR, "held by a stranger that accepts connections and says nothing"),
     ],
 )

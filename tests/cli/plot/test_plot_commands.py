@@ -48,9 +48,9 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     pictures: list[Any] = []
     show = messages.show
 
-    def note(figure: Any, wish: messages.Wish) -> None:
+    def note(figure: Any, request: messages.Request) -> None:
         pictures.append(figure.axes[0])
-        show(figure, wish)
+        show(figure, request)
 
     monkeypatch.setattr(drawing, "show", note)
     monkeypatch.setattr(drawing, "show", note)
@@ -186,9 +186,9 @@ def test_a_world_that_cannot_be_found_is_told_of_and_the_way_is_drawn(
     with spinning(node, world):
         assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png") == 0
         assert plot("odom", "/lab/odom", "--out", tmp_path / "a.png", "--world", "atlantis") == 1
-    told = capsys.readouterr().err.splitlines()
-    assert told[0] == "robolink: drawn without the world: no world named 'atlantis'"
-    assert told[-1] == "robolink: no world named 'atlantis'"
+    reported = capsys.readouterr().err.splitlines()
+    assert reported[0] == "robolink: drawn without the world: no world named 'atlantis'"
+    assert reported[-1] == "robolink: no world named 'atlantis'"
 
 
 @pytest.mark.parametrize("field", ["/lab/odom.twist.twist.linear.x", "lab/odom/twist/twist/linear/x"])
@@ -350,23 +350,23 @@ def lap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_bags_trajectories_are_drawn(lap: Path, drawn: list[Any], capsys: Captured) -> None:
     assert main(["plot", "odom", "--bag", "lap", "--out", "way.png"]) == 0
     assert [each.get_label() for each in drawn[-1].lines[::3]] == ["/odom: 4.00 m", "/arm/goal: 8.00 m"]
-    assert "/odom: " in (told := capsys.readouterr().err)
-    assert "it is left out" in told
+    assert "/odom: " in (reported := capsys.readouterr().err)
+    assert "it is left out" in reported
     assert main(["plot", "odom", "odom", "--bag", "lap", "--world", "obstacles", "--out", "way.png"]) == 0
     assert [each.get_text() for each in drawn[-1].get_legend().get_texts()] == ["/odom: 4.00 m"]
     assert Path("way.png").read_bytes().startswith(PNG)
 
 
-@pytest.mark.parametrize("asked", ["speed.data", "/speed/data"])
-def test_a_bags_values_are_drawn_over_the_times_at_which_they_came(lap: Path, drawn: list[Any], asked: str) -> None:
-    assert main(["plot", "topic", asked, "--bag", "lap", "--out", "speed.png"]) == 0
+@pytest.mark.parametrize("requested", ["speed.data", "/speed/data"])
+def test_a_bags_values_are_drawn_over_the_times_at_which_they_came(lap: Path, drawn: list[Any], requested: str) -> None:
+    assert main(["plot", "topic", requested, "--bag", "lap", "--out", "speed.png"]) == 0
     (curve,) = drawn[-1].lines
     assert list(curve.get_xdata()) == [0.0, 1.0, 2.0, 3.0, 4.0]
     assert list(curve.get_ydata()) == [0.0, 0.5, 1.0, 1.5, 2.0]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "reported"),
     [
         ("odom odm --bag lap", "lap has no topic /odm (did you mean '/odom'?); it has /odom, /arm/goal, /speed"),
         ("odom speed --bag lap", "/speed is of std_msgs/msg/Float64: expected one with a position"),
@@ -377,9 +377,9 @@ def test_a_bags_values_are_drawn_over_the_times_at_which_they_came(lap: Path, dr
         ("odom", "name the topics to draw, such as /odom, or a bag: --bag FOLDER"),
     ],
 )
-def test_what_a_bag_lacks_is_told(lap: Path, capsys: Captured, arguments: str, told: str) -> None:
+def test_what_a_bag_lacks_is_told(lap: Path, capsys: Captured, arguments: str, reported: str) -> None:
     assert main(["plot", *arguments.split(), "--out", "x.png"]) == 1
-    assert told in capsys.readouterr().err
+    assert reported in capsys.readouterr().err
 
 
 def test_a_bag_that_is_named_as_a_topic_is_told_at_once(

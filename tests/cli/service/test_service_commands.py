@@ -204,7 +204,7 @@ def test_a_type_of_the_workspace_is_known(tmp_path: Path, domain: int, monkeypat
 
 
 def test_reasons_are_given_after_a_second_and_the_end_comes_after_five() -> None:
-    assert (verbs.PATIENCE, verbs.Manner().timeout) == (1.0, 5.0)
+    assert (verbs.PATIENCE, verbs.Mode().timeout) == (1.0, 5.0)
 
 
 @pytest.mark.parametrize(

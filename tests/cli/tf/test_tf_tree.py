@@ -66,12 +66,14 @@ def test_the_tree_says_what_is_wrong(node: Node, again: Callable[..., None], cap
     assert main(["tf", "tree", "-t", "0.4", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert sorted(found["roots"]) in (["map", "rig"], ["odom", "rig"])
-    told = "\n".join(found["problems"])
-    assert re.search(r"'base' has 2 parents: '\w+' \(from /[\w/]+\) and '\w+' \(from /[\w/]+\): lookups jump", told)
-    assert "'camera' is published by /lab/robot and /other: they overwrite each other" in told
-    assert re.search(r"'camera' is old: its last transform is of \d\.\d s ago", told)
-    assert "2 trees that nothing connects" in told
-    assert re.search(r"refused \d+ of 'x' -> 'x' from /lab/robot: TF_SELF_TRANSFORM: parent and child are one", told)
+    reported = "\n".join(found["problems"])
+    assert re.search(r"'base' has 2 parents: '\w+' \(from /[\w/]+\) and '\w+' \(from /[\w/]+\): lookups jump", reported)
+    assert "'camera' is published by /lab/robot and /other: they overwrite each other" in reported
+    assert re.search(r"'camera' is old: its last transform is of \d\.\d s ago", reported)
+    assert "2 trees that nothing connects" in reported
+    assert re.search(
+        r"refused \d+ of 'x' -> 'x' from /lab/robot: TF_SELF_TRANSFORM: parent and child are one", reported
+    )
 
 
 def test_the_tree_as_a_graph(node: Node, capsys: Captured) -> None:
@@ -137,36 +139,36 @@ def seen(child: str, parent: str, *stamps: float, sender: str = "/a", fixed: boo
     return made_
 
 
-def told(*links: Seen, now: float = 100.0) -> list[str]:
+def reported(*links: Seen, now: float = 100.0) -> list[str]:
     found = tree.nodes(list(links), int(now * S))
     return list(tree.problems(found, list(links)))
 
 
 def test_nothing_is_wrong_with_a_good_tree() -> None:
-    assert told(seen("b", "a", 99.8, 99.9, 100), seen("c", "b", 0, fixed=True)) == []
+    assert reported(seen("b", "a", 99.8, 99.9, 100), seen("c", "b", 0, fixed=True)) == []
 
 
 def test_stamps_of_another_clock_are_compared_to_each_other() -> None:
     sim = seen("b", "a", 5.0, 5.1), seen("c", "b", 1.0, 1.1)
     assert tree.reference(list(sim), 100 * S) == int(5.1 * S)
-    assert told(*sim) == ["'c' is old: its last transform is of 4.0 s ago"]
+    assert reported(*sim) == ["'c' is old: its last transform is of 4.0 s ago"]
 
 
 def test_a_slow_frame_is_not_old() -> None:
     slow = Seen("b", "a", "/a", False)
     for second in (80, 90, 98):
         slow.add(second * S, second * S)
-    assert told(slow) == []
+    assert reported(slow) == []
 
 
 def test_frames_without_stamps_and_frames_of_the_future() -> None:
-    assert told(seen("b", "a", 0, 0)) == ["'b' has no stamps: all are 0, so that only the latest can be looked up"]
-    assert told(seen("b", "a", 103, 104)) == ["'b' is ahead of time: its last transform is of 4.0 s from now"]
+    assert reported(seen("b", "a", 0, 0)) == ["'b' has no stamps: all are 0, so that only the latest can be looked up"]
+    assert reported(seen("b", "a", 103, 104)) == ["'b' is ahead of time: its last transform is of 4.0 s from now"]
 
 
 def test_static_and_moving_at_once() -> None:
     both = seen("b", "a", 99.9, 100), seen("b", "a", 0, sender="/z", fixed=True)
-    assert "'b' is both static and moving: each makes a buffer forget the other" in told(*both)
+    assert "'b' is both static and moving: each makes a buffer forget the other" in reported(*both)
 
 
 @given(

@@ -101,12 +101,12 @@ def test_lost_messages_are_told_unless_not_wanted(node: Node, capsys: Captured) 
         if number in (1, 2):
             publisher._attachment()  # numbered, and lost on its way
         publisher.publish(Int32(data=number))
-    for options, told in (([], True), (["--no-lost-messages"], False)):
+    for options, reported in (([], True), (["--no-lost-messages"], False)):
         assert main(["topic", "echo", "/count", "--csv", "--timeout", "1", *options]) == 0
         out, err = capsys.readouterr()
         assert out.split() == ["0", "1", "2", "3", "4"]
-        assert ("A message was lost!!!" in err) is told
-        assert ("\ttotal count: 2\n" in err) is told
+        assert ("A message was lost!!!" in err) is reported
+        assert ("\ttotal count: 2\n" in err) is reported
 
 
 def test_a_timeout_ends_it(node: Node, capsys: Captured) -> None:
@@ -229,8 +229,8 @@ def test_another_definition_of_the_type_is_told(node: Node, monkeypatch: pytest.
     when_said(monkeypatch, echo, "tell", press_ctrl_c)
     monkeypatch.setattr("robolink.cli.topic.echo.message_type", lambda *_: Int32)
     assert main(["topic", "echo", "/x", "Int32"]) == 130
-    told = capsys.readouterr().err.splitlines()[-1]
-    assert told.startswith(
+    reported = capsys.readouterr().err.splitlines()[-1]
+    assert reported.startswith(
         "nothing will come: /lab/robot has another definition of std_msgs/msg/Int32 (its hash is RIHS"
     )
     node.destroy_subscription(reader)
@@ -244,10 +244,10 @@ def test_another_domain_that_can_be_seen_is_named(
     monkeypatch.setenv("ROS_DOMAIN_ID", "9")
     when_said(monkeypatch, echo, "tell", press_ctrl_c)
     assert main(["topic", "echo", "/x"]) == 130
-    told = (
+    reported = (
         "waiting for a publisher of /x: nobody publishes it on domain 9 yet; it is on domain 7: set ROS_DOMAIN_ID=7\n"
     )
-    assert capsys.readouterr().err == told
+    assert capsys.readouterr().err == reported
 
 
 def test_a_payload_that_is_no_message_ends_nothing(node: Node, capsys: Captured) -> None:

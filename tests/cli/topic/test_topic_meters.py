@@ -235,8 +235,8 @@ def test_a_topic_of_nobody_is_told(node: Node, verb: str, monkeypatch: pytest.Mo
     node.create_publisher(Int32, "/xx", 10)
     until_said(monkeypatch, "waiting")
     assert main(["topic", verb, "/x"]) == 130
-    told = "waiting for a publisher of /x: nobody publishes it on domain 7 yet (did you mean '/xx'?)\n"
-    assert capsys.readouterr() == ("", told)
+    reported = "waiting for a publisher of /x: nobody publishes it on domain 7 yet (did you mean '/xx'?)\n"
+    assert capsys.readouterr() == ("", reported)
 
 
 def test_what_cannot_be_read_is_left_out_and_told_once(
