@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from robolink.cli.shared.layout import aligned, shown_time
 from robolink.cli.shared.output import say, say_json
 from robolink.exceptions import NotFoundError
+from robolink.supervisor.control.client import Launcher, LauncherError, LauncherGoneError, running
+from robolink.supervisor.policy import Step, described, is_orderly
 from robolink.system import clocks
 from robolink.system.terminal import fit, shown
 from robolink.text.names import meant, the_one
 
 if TYPE_CHECKING:
-    from robolink.supervisor.control.client import Launcher
     from robolink.supervisor.control.protocol import Response
     from robolink.supervisor.events import Status
     from robolink.supervisor.monitoring.resources import Usage
@@ -36,8 +37,6 @@ FIRST_LOOK = 0.5
 
 def status(launch: str = "", *, json: bool = False) -> None:
     """Show the state of the processes of all the user's launchers, or of one, by its launch file's name or its pid."""
-    from robolink.supervisor.control.client import LauncherError
-
     found: list[tuple[Launcher, Response | str]] = []
     for launcher in _named(launch):
         try:
@@ -57,8 +56,6 @@ def stop(name: str = "") -> None:
 
     Raises LauncherError, and does nothing, for a name that both a launcher and a node have.
     """
-    from robolink.supervisor.control.client import LauncherError
-
     if name and _is_node(name):
         stop_one(name)
         return
@@ -103,8 +100,6 @@ def top(launch: str = "", *, json: bool = False, every: float = 2.0) -> None:
 
 def names_for(words: Sequence[str], within: float) -> list[str]:
     """Return completions of `stop` or `restart`, for the words so far; each launcher has `within` seconds to answer."""
-    from robolink.supervisor.control.client import LauncherError, running
-
     verb, *launch = words
     everyone = running()
     names = [] if launch else [each.name for each in everyone]
@@ -117,8 +112,6 @@ def names_for(words: Sequence[str], within: float) -> list[str]:
 
 def _named(launch: str) -> list[Launcher]:
     """Return all launchers, or those of a name or pid. Raises NotFoundError if there is none of that name."""
-    from robolink.supervisor.control.client import running
-
     everyone = running()
     if not launch:
         return everyone
@@ -134,8 +127,6 @@ def _names_of(launcher: Launcher) -> tuple[str, ...]:
 
 def _only(launch: str, how: str = "") -> Launcher:
     """Return the one launcher that is meant. Raises LauncherError for none or several, with their names and `how`."""
-    from robolink.supervisor.control.client import LauncherError
-
     found = _named(launch)
     if not found:
         raise LauncherError("no launcher is running")
@@ -147,8 +138,6 @@ def _only(launch: str, how: str = "") -> Launcher:
 
 def _is_node(name: str) -> bool:
     """True if a name is a node's. Raises LauncherError if it is a launcher's, too, NotFoundError if it is unknown."""
-    from robolink.supervisor.control.client import LauncherError, running
-
     everyone = running()
     launchers = [each for each in everyone if name in _names_of(each)]
     answered = list(_answering(everyone))
@@ -167,8 +156,6 @@ def _is_node(name: str) -> bool:
 
 def _node(node: str, launch: str, verb: str) -> tuple[Launcher, Status]:
     """Return a node's launcher and status. Raises LauncherError or NotFoundError unless there is exactly one."""
-    from robolink.supervisor.control.client import LauncherError
-
     answered = list(_answering(_named(launch)))
     if not answered:
         raise LauncherError(f"cannot {verb} '{node}': no launcher is running")
@@ -185,9 +172,6 @@ def _node(node: str, launch: str, verb: str) -> tuple[Launcher, Status]:
 
 def _stopped(launcher: Launcher, before: Status) -> str:
     """Wait until a node has stopped, and return how it ended, in words. Raises LauncherError after the timeout."""
-    from robolink.supervisor.control.client import LauncherError, LauncherGoneError
-    from robolink.supervisor.policy import Step, described, is_orderly
-
     deadline = clocks.monotonic() + STOPPED_WITHIN
     while clocks.monotonic() < deadline:
         try:
@@ -205,8 +189,6 @@ def _stopped(launcher: Launcher, before: Status) -> str:
 
 def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
     """Yield the launchers with their answers. One that does not answer is skipped, unless it is the only one."""
-    from robolink.supervisor.control.client import LauncherError, LauncherGoneError
-
     for launcher in found:
         try:
             yield launcher, launcher.status()
@@ -219,8 +201,6 @@ def _answering(found: Sequence[Launcher]) -> Iterator[Answered]:
 
 def _unknown_node(node: str, answered: Sequence[Answered], verb: str) -> Exception:
     """Return the error for an unknown node; for one that shares a process, with the name of that process."""
-    from robolink.supervisor.control.client import LauncherError
-
     for launcher, answer in answered:
         for process, members in answer.members.items():
             if meant(node, members):
@@ -264,14 +244,11 @@ def _block(launcher: Launcher, answer: Response | str) -> list[str]:
 
 
 def _last_exit(status: Status) -> str:
-    from robolink.supervisor.policy import described
-
     return "-" if status.returncode is None else described(status.returncode)
 
 
 def _measured(launcher: Launcher, every: float) -> Iterator[tuple[Response, Mapping[str, Usage]]]:
     """Yield measurements every so many seconds, until the launcher has ended."""
-    from robolink.supervisor.control.client import LauncherGoneError
     from robolink.supervisor.monitoring.resources import Meter, measured
 
     meter = Meter()
