@@ -1,4 +1,4 @@
-"""Window of turtlesim: the page of `robolink view`, served by the node's own process and opened in the browser."""
+"""Windows of turtlesim: the page of `robolink view`, served by the node's own process, or a picture in the terminal."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robolink.exceptions import RobolinkError
-from robolink.extensions.optional import page
+from robolink.extensions.optional import MissingPartError, page
 from robolink.parameter import Parameter
 from robolink.running.timebase import VirtualTime
 from robolink.system.terminal import open_in_browser
@@ -49,6 +49,8 @@ def window(node: Node, picture: str) -> Iterator[None]:
     with contextlib.ExitStack() as stack:
         try:
             address = _served(node, stack)
+        except MissingPartError as error:
+            node.get_logger().warning(f"no window: {error}")
         except RobolinkError as error:
             node.get_logger().warning(f"no window: {error}; 'robolink view' shows the turtles")
         else:
