@@ -105,7 +105,7 @@ def cvtColor2(source: Pixels, encoding_in: str, encoding_out: str) -> Pixels:  #
     Args:
         source: The image.
         encoding_in: Its encoding.
-        encoding_out: The wanted one.
+        encoding_out: The requested one.
 
     Raises:
         CvBridgeError: if the conversion makes no sense, or the image is not of its encoding.
@@ -127,7 +127,7 @@ def cvtColorForDisplay(  # noqa: N802
     Args:
         source: The image.
         encoding_in: Its encoding. Labels (``32SC1``) get a colour each, and -1 is black.
-        encoding_out: The wanted encoding of 8 bits, '' for ``bgr8``.
+        encoding_out: The requested encoding of 8 bits, '' for ``bgr8``.
         do_dynamic_scaling: True: the least value becomes black, the largest white.
         min_image_value: Value that becomes black; it counts where `max_image_value` is another.
         max_image_value: Value that becomes white.
@@ -136,23 +136,23 @@ def cvtColorForDisplay(  # noqa: N802
     Raises:
         CvBridgeError: if the image has several channels and is to be scaled, or cannot be converted.
     """
-    came, wanted = encoding_of(encoding_in), encoding_of(encoding_out or "bgr8")
-    if wanted.bits != 8 or wanted.colours not in ("mono", "bgr", "rgb", "bgra", "rgba"):
-        raise CvBridgeError(f"cvtColorForDisplay makes colours or grey of 8 bits, not {wanted.name}")
-    if wanted.name == "bgr8" and came.name == "32SC1":
+    came, requested = encoding_of(encoding_in), encoding_of(encoding_out or "bgr8")
+    if requested.bits != 8 or requested.colours not in ("mono", "bgr", "rgb", "bgra", "rgba"):
+        raise CvBridgeError(f"cvtColorForDisplay makes colours or grey of 8 bits, not {requested.name}")
+    if requested.name == "bgr8" and came.name == "32SC1":
         return _labels(source)
     if do_dynamic_scaling:
         seen = source[np.isfinite(source)]
         min_image_value, max_image_value = (float(seen.min()), float(seen.max())) if seen.size else (0.0, 0.0)
         if min_image_value == max_image_value:
-            shape = source.shape[:2] if wanted.channels == 1 else (*source.shape[:2], wanted.channels)
+            shape = source.shape[:2] if requested.channels == 1 else (*source.shape[:2], requested.channels)
             return np.full(shape, GREY, np.uint8)
     if min_image_value != max_image_value:
-        return _scaled(source, came, wanted, (min_image_value, max_image_value), colormap)
-    return convert(source, _SEEN_AS.get(came.cv_type, came.name) if not came.colours else came.name, wanted.name)
+        return _scaled(source, came, requested, (min_image_value, max_image_value), colormap)
+    return convert(source, _SEEN_AS.get(came.cv_type, came.name) if not came.colours else came.name, requested.name)
 
 
-def _scaled(source: Pixels, came: Encoding, wanted: Encoding, ends: tuple[float, float], colormap: int) -> Pixels:
+def _scaled(source: Pixels, came: Encoding, requested: Encoding, ends: tuple[float, float], colormap: int) -> Pixels:
     if came.channels != 1:
         raise CvBridgeError(f"cvtColorForDisplay scales images of one channel, and {came.name} has {came.channels}")
     low, high = ends
@@ -160,11 +160,11 @@ def _scaled(source: Pixels, came: Encoding, wanted: Encoding, ends: tuple[float,
     unknown = np.isnan(shades)
     grey = np.clip(np.rint(np.where(unknown, 0.0, shades)), 0, 255).astype(np.uint8)
     if colormap == -1:
-        return convert(grey, "mono8", wanted.name)
+        return convert(grey, "mono8", requested.name)
     cv2 = opencv("a colour map")
     coloured: Any = call("apply the colour map", cv2.applyColorMap, grey, colormap)
     coloured[unknown] = 0
-    return convert(coloured, "bgr8", wanted.name)
+    return convert(coloured, "bgr8", requested.name)
 
 
 def _labels(source: Pixels) -> Pixels:
@@ -252,7 +252,7 @@ class CvBridge:
 
         Args:
             img_msg: The image.
-            desired_encoding: The wanted encoding, such as ``bgr8``; ``passthrough`` converts nothing.
+            desired_encoding: The requested encoding, such as ``bgr8``; ``passthrough`` converts nothing.
 
         Raises:
             CvBridgeError: if the message contradicts itself, or cannot be converted.
@@ -265,10 +265,10 @@ class CvBridge:
 
         Args:
             cmprs_img_msg: The compressed image.
-            desired_encoding: The wanted encoding; ``passthrough`` is what is in the file, in OpenCV's order of colours.
+            desired_encoding: Requested encoding; ``passthrough`` is what is in the file, in OpenCV's order of colours.
 
         Raises:
-            CvBridgeError: without OpenCV, for bytes that are no picture, and if it cannot be converted.
+            CvBridgeError: without OpenCV, for bytes that are not a picture, and if it cannot be converted.
         """
         return decompressed(cmprs_img_msg, desired_encoding)
 

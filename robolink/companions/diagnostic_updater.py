@@ -50,7 +50,7 @@ class DiagnosticStatusWrapper(DiagnosticStatus):
     def mergeSummary(self, *args: Any) -> None:  # noqa: N802 - ROS 2's name
         """Join another level and message: the higher level counts.
 
-        Of an OK and another level only the other's message is kept; two of a kind are joined by a semicolon.
+        Of an OK and another level only the other's message stays; two of a kind are joined by a semicolon.
 
         Args:
             *args: A status, or a level and a message.
@@ -106,7 +106,7 @@ class FunctionDiagnosticTask(DiagnosticTask):
         self.fn = fn
 
     def run(self, stat: DiagnosticStatusWrapper) -> DiagnosticStatusWrapper:
-        """Return what the function makes of `stat`."""
+        """Return the status that the function makes of `stat`."""
         return self.fn(stat)
 
 

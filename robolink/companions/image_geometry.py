@@ -38,7 +38,7 @@ _STAGES, _STEPS = 10, 5
 _STEP = 1e-6
 """Distance to the neighbours from which a slope is taken, in focal lengths."""
 _NEAR, _TINY = 1e-9, 1e-12
-"""Distance, in focal lengths, at which a place is found; and a step that is no step."""
+"""Distance, in focal lengths, at which a place is found; and a step too small to be one."""
 
 
 class Lens(NamedTuple):
@@ -102,7 +102,7 @@ def lens_of(model: str, coefficients: Any) -> Lens:
     """Return the lens of a CameraInfo.
 
     Args:
-        model: Its distortion_model; all but a fisheye's are told apart by the number of coefficients, as OpenCV does.
+        model: Its distortion_model; all but a fisheye's are known by the number of coefficients, as OpenCV does.
         coefficients: Its d.
 
     Raises:

@@ -85,7 +85,7 @@ class Subscriber(SimpleFilter):
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
-        if key == "sub":  # asked before it was made
+        if key == "sub":  # looked up before it was made
             raise AttributeError(key)
         return getattr(self.sub, key)
 
@@ -97,27 +97,27 @@ class Cache(SimpleFilter):
     Times are compared as they are: use Times of ROS's clock for messages with headers.
 
     Args:
-        f: Filter whose messages are kept.
-        cache_size: Number of messages that are kept; the oldest goes first.
+        f: Filter whose messages are stored.
+        cache_size: Number of messages that are stored; the oldest goes first.
         allow_headerless: True keeps messages without a header by the time of their arrival.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
         super().__init__()
         self.cache_size, self.allow_headerless = cache_size, allow_headerless
-        self._kept: deque[tuple[Time, Any]] = deque(maxlen=max(0, cache_size))
+        self._stored: deque[tuple[Time, Any]] = deque(maxlen=max(0, cache_size))
         self._stamps = _Stamps("message_filters_cache", allow_headerless, [f])
         self.connectInput(f)
 
     @property
     def cache_msgs(self) -> list[Any]:
         """The messages, as they came."""
-        return [msg for _, msg in self._kept]
+        return [msg for _, msg in self._stored]
 
     @property
     def cache_times(self) -> list[Time]:
         """The times of the messages."""
-        return [time for time, _ in self._kept]
+        return [time for time, _ in self._stored]
 
     def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802
         """Take the output of the filter `f`."""
@@ -127,33 +127,33 @@ class Cache(SimpleFilter):
         """Keep `msg` and pass it on."""
         time = self._stamps.of(msg)
         if time is not None:
-            self._kept.append((time, msg))
+            self._stored.append((time, msg))
             self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802
         """Return the messages from the time `from_stamp` to `to_stamp`, both included."""
         assert from_stamp <= to_stamp, "the interval ends before it begins"
-        return [msg for time, msg in list(self._kept) if from_stamp <= time <= to_stamp]
+        return [msg for time, msg in list(self._stored) if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802
         """Return the earliest message at or after the time `stamp`; None if there is none."""
-        return min((each for each in list(self._kept) if each[0] >= stamp), key=_time_of, default=(None, None))[1]
+        return min((each for each in list(self._stored) if each[0] >= stamp), key=_time_of, default=(None, None))[1]
 
     def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802
         """Return the latest message at or before the time `stamp`; None if there is none."""
-        return max((each for each in list(self._kept) if each[0] <= stamp), key=_time_of, default=(None, None))[1]
+        return max((each for each in list(self._stored) if each[0] <= stamp), key=_time_of, default=(None, None))[1]
 
     def getLastestTime(self) -> Time | None:  # noqa: N802 - upstream's spelling
         """Return the time of the message that came last; None if none has come."""
-        return self._kept[-1][0] if self._kept else None
+        return self._stored[-1][0] if self._stored else None
 
     def getOldestTime(self) -> Time | None:  # noqa: N802
-        """Return the time of the first message of those kept; None if none has come."""
-        return self._kept[0][0] if self._kept else None
+        """Return the time of the first message of those stored; None if none has come."""
+        return self._stored[0][0] if self._stored else None
 
     def getLast(self) -> Any:  # noqa: N802
         """Return the message that came last; None if none has come."""
-        return self._kept[-1][1] if self._kept else None
+        return self._stored[-1][1] if self._stored else None
 
 
 class TimeSynchronizer(SimpleFilter):
@@ -298,7 +298,7 @@ class _Stamps:
         node = next((each.node for each in fs if isinstance(each, Subscriber)), None)
         self.clock = ROSClock() if node is None else node.get_clock()
         self.logger, self.allow_headerless, self.arrival = logger, allow_headerless, arrival
-        self.told = False
+        self.reported = False
 
     def of(self, msg: Any) -> Time | None:
         """Return the time, None for a message that is to be left out; the first of these is warned about."""
@@ -319,8 +319,8 @@ class _Stamps:
             return None
 
     def _tell(self, problem: str) -> None:
-        if not self.told:
-            self.told = True
+        if not self.reported:
+            self.reported = True
             get_logger(self.logger).warning(problem)
 
 
@@ -333,5 +333,5 @@ def _nanoseconds(stamp: Any) -> int:
     return int(stamp.nanoseconds if hasattr(stamp, "nanoseconds") else stamp.sec * 10**9 + stamp.nanosec)
 
 
-def _time_of(kept: tuple[Time, Any]) -> int:
-    return kept[0].nanoseconds
+def _time_of(stored: tuple[Time, Any]) -> int:
+    return stored[0].nanoseconds

@@ -49,7 +49,7 @@ def get_message(identifier: str) -> Any:
     """Return the message class of the name `identifier`: ``std_msgs/msg/String`` or ``std_msgs/String``.
 
     Raises NotFoundError (also an AttributeError or a ModuleNotFoundError), and MessageError (a ValueError) for what is
-    no message.
+    not a message.
     """
     return _checked(get_message_namespaced_type(identifier), identifier, "a message", is_message)
 
@@ -289,13 +289,13 @@ def get_interface_path(interface_name: str) -> str:
 
 
 def _interfaces(package_names: Iterable[str], kinds: tuple[str, ...]) -> dict[str, list[str]]:
-    known, wanted = _known(), list(package_names)
-    for each in wanted:
+    known, requested = _known(), list(package_names)
+    for each in requested:
         if each not in known and each not in get_packages_with_prefixes():
             raise NotFoundError("package", each, known)
     found = {
         package: [name for name in known.get(package, ()) if name.partition("/")[0] in kinds]
-        for package in wanted or sorted(known)
+        for package in requested or sorted(known)
     }
     return {package: types for package, types in found.items() if types}
 

@@ -106,10 +106,10 @@ def _alike(name: str) -> str:
 
 
 def _fill_folder(hint: str, module: ModuleType) -> None:
-    def asked(name: str) -> Any:
+    def refuse(name: str) -> Any:
         raise lacking(module.__name__, name, list, sys._getframe(1), hint)
 
-    module.__getattr__ = asked  # type: ignore[method-assign]
+    module.__getattr__ = refuse  # type: ignore[method-assign]
 
 
 def room_of(fullname: str) -> str:
@@ -156,7 +156,7 @@ def _is_the_users_own(top: str) -> bool:
 
 
 def _put(fullname: str, room: str, _new: ModuleType) -> None:
-    """Put robolink's module in the place of the new one; what is asked of it and not there is answered well."""
+    """Put robolink's module in the place of the new one; a name that it lacks is answered with advice."""
     module: Any = importlib.import_module(room)
     sys.modules[fullname] = module
     package, _, kind = fullname.partition(".")
@@ -173,7 +173,7 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
         set_home(package, kind, functools.partial(_home, fullname))
     own = vars(module).get("__getattr__")
     if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
-        module.__getattr__ = functools.partial(_asked, fullname, module, own)
+        module.__getattr__ = functools.partial(_lacked, fullname, module, own)
 
 
 def _home(module: str, short: str) -> str:
@@ -181,7 +181,7 @@ def _home(module: str, short: str) -> str:
     return f"{module}._{snake_case(short)}"
 
 
-def _asked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
+def _lacked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None, name: str) -> Any:
     """Return a name that a module lacks: its `own` answer to that, if it has any."""
     try:
         if own is not None:
@@ -219,7 +219,7 @@ def _home_of(fullname: str, name: str) -> str:
 
 
 def _fill_package(module: ModuleType) -> None:
-    module.__getattr__ = functools.partial(_asked, module.__name__, module, None)  # type: ignore[method-assign]
+    module.__getattr__ = functools.partial(_lacked, module.__name__, module, None)  # type: ignore[method-assign]
 
 
 def _defined_in(fullname: str) -> list[str]:
@@ -242,7 +242,7 @@ def _fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> No
                 vars(module)[f"{short}_{part}"] = getattr(cls, part)
         if hasattr(cls, "Impl"):
             vars(module).update({f"{short}_{end}": getattr(cls.Impl, name) for end, name in ACTION_PARTS.items()})
-    module.__getattr__ = functools.partial(_asked, fullname, module, None)  # type: ignore[method-assign]
+    module.__getattr__ = functools.partial(_lacked, fullname, module, None)  # type: ignore[method-assign]
 
 
 def _modules_beside(fullname: str) -> list[str]:

@@ -51,8 +51,8 @@ class NewPackage:
     library: str = ""
 
 
-def new_package(wanted: NewPackage, destination: Path) -> Made:
-    """Make the package that is `wanted` in a folder of its name below `destination`.
+def new_package(package: NewPackage, destination: Path) -> Made:
+    """Make a `package` in a folder of its name below `destination`.
 
     A node is a Python program in both build types, since robolink runs no C++.
 
@@ -61,37 +61,37 @@ def new_package(wanted: NewPackage, destination: Path) -> Made:
             the folder is there already.
         OSError: if the files cannot be written.
     """
-    _check(wanted)
-    if (destination / wanted.name).exists():
+    _check(package)
+    if (destination / package.name).exists():
         raise ScaffoldError(
-            f"{destination / wanted.name} is there already: take another name or --destination-directory"
+            f"{destination / package.name} is there already: take another name or --destination-directory"
         )
-    files = _python(wanted) if wanted.build_type == PYTHON else _cmake(wanted)
-    files.update(license_files(wanted.license, wanted.maintainer))
-    return written(destination / wanted.name, wanted.name, files)
+    files = _python(package) if package.build_type == PYTHON else _cmake(package)
+    files.update(license_files(package.license, package.maintainer))
+    return written(destination / package.name, package.name, files)
 
 
-def _check(wanted: NewPackage) -> None:
+def _check(package: NewPackage) -> None:
     """Raise ScaffoldError if a name or a text is not fit for the files of a package."""
-    names = {"package": wanted.name, "node": wanted.node, "library": wanted.library}
+    names = {"package": package.name, "node": package.node, "library": package.library}
     for kind, name in names.items():
-        fit = checked_module if kind == "package" and wanted.build_type == PYTHON else checked
+        fit = checked_module if kind == "package" and package.build_type == PYTHON else checked
         if (name or kind == "package") and not fit(kind, name).isidentifier():
             raise ScaffoldError(f"'{name}' is not a name for a {kind}: Python imports no '-', take '_'")
-    for each in wanted.dependencies:
+    for each in package.dependencies:
         if not _DEPENDENCY.fullmatch(each):
             raise ScaffoldError(f"'{each[:60]}' is not a name of a package to depend on")
-    if wanted.node and wanted.node == wanted.library:
-        raise ScaffoldError(f"the node and the library cannot both be called '{wanted.node}'")
-    _check_texts(wanted)
+    if package.node and package.node == package.library:
+        raise ScaffoldError(f"the node and the library cannot both be called '{package.node}'")
+    _check_texts(package)
 
 
-def _check_texts(wanted: NewPackage) -> None:
+def _check_texts(package: NewPackage) -> None:
     texts = {
-        "description": wanted.description,
-        "license": wanted.license,
-        "maintainer's name": wanted.maintainer,
-        "maintainer's email": wanted.email,
+        "description": package.description,
+        "license": package.license,
+        "maintainer's name": package.maintainer,
+        "maintainer's email": package.email,
     }
     for what, text in texts.items():
         unfit = _UNFIT.search(text)
@@ -101,28 +101,28 @@ def _check_texts(wanted: NewPackage) -> None:
             )
 
 
-def _python(wanted: NewPackage) -> dict[str, str]:
-    name, node, library = wanted.name, wanted.node, wanted.library
+def _python(package: NewPackage) -> dict[str, str]:
+    name, node, library = package.name, package.node, package.library
     script = f"\n            '{node} = {name}.{node}:main'," if node else ""
     added = {f"{name}/{node}.py": _node(name)} if node else {}
     if library:
         added[f"{name}/{library}/__init__.py"] = ""
-    return {**rendered("package_python", {**_words(wanted), "SCRIPTS": script}), **added}
+    return {**rendered("package_python", {**_words(package), "SCRIPTS": script}), **added}
 
 
-def _cmake(wanted: NewPackage) -> dict[str, str]:
-    node, library = wanted.node, wanted.library
-    find = "".join(f"find_package({each} REQUIRED)\n" for each in wanted.dependencies)
+def _cmake(package: NewPackage) -> dict[str, str]:
+    node, library = package.node, package.library
+    find = "".join(f"find_package({each} REQUIRED)\n" for each in package.dependencies)
     install = _LIBRARY.replace("@LIBRARY@", library) if library else ""
     added = {}
     if library:
-        guard = f"{wanted.name}__{library}_HPP_".upper()
-        words = {"NAME": wanted.name, "LIBRARY": library, "CLASS": class_name(library), "GUARD": guard}
+        guard = f"{package.name}__{library}_HPP_".upper()
+        words = {"NAME": package.name, "LIBRARY": library, "CLASS": class_name(library), "GUARD": guard}
         added = rendered("package_library", words)
     if node:
         install += f"\ninstall(PROGRAMS scripts/{node}.py DESTINATION lib/${{PROJECT_NAME}} RENAME {node})\n"
-        added[f"scripts/{node}.py"] = "#!/usr/bin/env python3\n\n\n" + _node(wanted.name)
-    words = {**_words(wanted), "FIND": find, "INSTALL": install}
+        added[f"scripts/{node}.py"] = "#!/usr/bin/env python3\n\n\n" + _node(package.name)
+    words = {**_words(package), "FIND": find, "INSTALL": install}
     return {**rendered("package_cmake", words), **added}
 
 
@@ -130,18 +130,18 @@ def _node(package: str) -> str:
     return f"def main():\n    print('Hi from {package}.')\n\n\nif __name__ == '__main__':\n    main()\n"
 
 
-def _words(wanted: NewPackage) -> dict[str, str]:
-    dependencies = "".join(f"  <depend>{escape(each)}</depend>\n" for each in wanted.dependencies)
+def _words(package: NewPackage) -> dict[str, str]:
+    dependencies = "".join(f"  <depend>{escape(each)}</depend>\n" for each in package.dependencies)
     texts = {
-        "MAINTAINER": wanted.maintainer,
-        "DESCRIPTION": wanted.description,
-        "LICENSE": wanted.license,
+        "MAINTAINER": package.maintainer,
+        "DESCRIPTION": package.description,
+        "LICENSE": package.license,
     }
     return {
-        **{f"PY_{key}": repr(text) for key, text in {**texts, "EMAIL": wanted.email}.items()},
-        "FORMAT": str(wanted.package_format),
-        "NAME": wanted.name,
-        "EMAIL": escape(wanted.email, {'"': "&quot;"}),
+        **{f"PY_{key}": repr(text) for key, text in {**texts, "EMAIL": package.email}.items()},
+        "FORMAT": str(package.package_format),
+        "NAME": package.name,
+        "EMAIL": escape(package.email, {'"': "&quot;"}),
         **{key: escape(text) for key, text in texts.items()},
         "DEPENDENCIES": f"\n{dependencies}" if dependencies else "",
     }

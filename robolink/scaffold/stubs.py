@@ -28,12 +28,12 @@ from robolink.message.stub import stub_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
 
 FOLDER = "typings"
-"""Folder of the stubs in a workspace: where pyright looks without being told."""
+"""Folder of the stubs in a workspace: where pyright looks by default."""
 SETTINGS = {
     "mypy.ini": "[mypy]\nmypy_path = typings\n",
     "pyrightconfig.json": '{"reportMissingModuleSource": false, "ignore": ["typings"]}\n',
 }
-"""Settings of the two checkers: mypy is told where to look, pyright that the source of a stub is elsewhere."""
+"""Settings of the two checkers: mypy's says where to look, pyright's that the source of a stub is elsewhere."""
 OTHER_SETTINGS = {
     "mypy.ini": {".mypy.ini": "[mypy", "pyproject.toml": "[tool.mypy", "setup.cfg": "[mypy"},
     "pyrightconfig.json": {"pyproject.toml": "[tool.pyright"},

@@ -165,12 +165,12 @@ def required(origin: dict[str, Any], version: str) -> Requirement:
         return Requirement(f"robolink[test] @ {url}")
     path = Path(url2pathname(urlsplit(url).path))
     if "dir_info" not in origin and path.suffix == ".whl":
-        kept, step = path.name, "" if path.is_file() else f"cp PATH/OF/{path.name} {WHEELS}/"
+        wheel, step = path.name, "" if path.is_file() else f"cp PATH/OF/{path.name} {WHEELS}/"
     else:
-        kept = f"robolink-{version}-py3-none-any.whl"
+        wheel = f"robolink-{version}-py3-none-any.whl"
         step = f'pip wheel --no-deps --wheel-dir {WHEELS} "{path if path.exists() else "PATH/OF/THE/CLONE"}"'
     note = f"robolink is on no package index yet: its wheel, in {WHEELS}/, belongs into the repository, for CI too."
-    return Requirement(f"./{WHEELS}/{kept}[test]", note, step, path if not step else None)
+    return Requirement(f"./{WHEELS}/{wheel}[test]", note, step, path if not step else None)
 
 
 MODELINE = "# yaml-language-server: $schema="
@@ -267,10 +267,10 @@ def _with_schemas(files: Mapping[str, str], folder: Path) -> dict[str, str]:
     return made
 
 
-def _workspace(asked: Folder) -> Path | None:
+def _workspace(requested: Folder) -> Path | None:
     """Return the user's workspace if it has folders of robolink's own: packages of ROS 2 have other places."""
-    found = user_workspace(asked)
-    if found is None or (asked is None and not any((found / each).is_dir() for each in PARTS)):
+    found = user_workspace(requested)
+    if found is None or (requested is None and not any((found / each).is_dir() for each in PARTS)):
         return None
     return found
 

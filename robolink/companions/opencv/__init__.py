@@ -77,7 +77,7 @@ def lost_name(module: ModuleType, version: str, name: str) -> NoReturn:
     Args:
         module: The module.
         version: OpenCV's version.
-        name: The name that was asked for.
+        name: The name that was looked up.
 
     Raises:
         AttributeError: always; ImportError in `from cv2 import NAME`.

@@ -64,7 +64,7 @@ class Trackbar:
         """Return the nearest value within the limits.
 
         Args:
-            value: The wanted value.
+            value: The requested value.
         """
         return max(self.least, min(self.most, int(value)))
 
@@ -84,7 +84,7 @@ class NoWindows:
         self._images = ShownImages()
         self._sizes: dict[str, tuple[int, int]] = {}
         self._trackbars: dict[tuple[str, str], Trackbar] = {}
-        self._is_told = False
+        self._is_reported = False
         self._still_none: bool | None = None
 
     def replace_functions(self) -> None:
@@ -116,9 +116,9 @@ class NoWindows:
 
     def _tell(self, name: str) -> None:
         """Warn once, with what to do instead."""
-        if self._is_told:
+        if self._is_reported:
             return
-        self._is_told = True
+        self._is_reported = True
         topic = self._images.topic("WINDOW")
         instead = f"'robolink view' shows its images, on {topic}" if topic else "cv2.imwrite writes images into files"
         reason = lack_of_windows(self._cv2)
@@ -248,9 +248,9 @@ def lack_of_windows(cv2: ModuleType) -> str:
     if sys.platform in ("win32", "darwin"):
         return ""
     platforms = _bundled_platforms(cv2)
-    asked = re.split("[:;]", os.environ.get("QT_QPA_PLATFORM", ""))[0] if platforms else ""
-    if asked not in ("", "xcb"):
-        return "" if asked in platforms else f"its Qt has no platform '{asked}', which QT_QPA_PLATFORM names"
+    platform = re.split("[:;]", os.environ.get("QT_QPA_PLATFORM", ""))[0] if platforms else ""
+    if platform not in ("", "xcb"):
+        return "" if platform in platforms else f"its Qt has no platform '{platform}', which QT_QPA_PLATFORM names"
     display = os.environ.get("DISPLAY", "")
     if display:
         return "" if _answers(display) else f"nobody answers at DISPLAY={display}"
@@ -260,7 +260,7 @@ def lack_of_windows(cv2: ModuleType) -> str:
 
 
 def _framework(cv2: ModuleType) -> str:
-    """Return what OpenCV makes its windows with, such as QT; '' if it was built without windows."""
+    """Return the library with which OpenCV makes its windows, such as QT; '' if it was built without windows."""
     ask = getattr(cv2, "currentUIFramework", None)
     if ask is not None:
         return str(ask())
@@ -292,7 +292,7 @@ def _connects(address: str | tuple[str, int]) -> bool:
         if isinstance(address, tuple):
             socket.create_connection(address, PATIENCE).close()
             return True
-        if sys.platform == "win32":  # never asked there, and it has no such sockets
+        if sys.platform == "win32":  # never called there, and it has no such sockets
             return True
         with socket.socket(socket.AF_UNIX) as link:
             link.settimeout(PATIENCE)

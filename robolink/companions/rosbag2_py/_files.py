@@ -84,9 +84,9 @@ class SequentialReader:
 
     def open(self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None) -> None:
         """Open a bag. Raises BagError if there is none, or if the program wants another serialization than cdr."""
-        wanted = converter_options.output_serialization_format if converter_options else ""
-        if wanted not in {"", "cdr"}:
-            raise BagError(f"messages of bags are cdr here, not '{wanted}'")
+        requested = converter_options.output_serialization_format if converter_options else ""
+        if requested not in {"", "cdr"}:
+            raise BagError(f"messages of bags are cdr here, not '{requested}'")
         self.close()
         self._bag = open_bag(Path(storage_options.uri))
         weakref.finalize(self, self._bag.close)  # rosbag2's reader has no `close`
@@ -177,14 +177,14 @@ class SequentialReader:
     def _begin(self, position: int | None, done: list[BagMessage] | None = None) -> None:
         """Begin at a time, without the messages of that very time which are `done`."""
         bag, reverse = self._opened(), self._order.reverse
-        wanted = {each.name for each in bag.topics if _takes(self._filter, each.name)}
+        requested = {each.name for each in bag.topics if _takes(self._filter, each.name)}
         start, end = self._first, None if self._last is None else self._last + 1
         if position is not None and reverse:
             end = position + 1 if end is None else min(end, position + 1)
         elif position is not None:
             start = position if start is None else max(start, position)
         self._position, self._done = position, list(done or ())
-        found = bag.messages(wanted, start, end, reverse=reverse)
+        found = bag.messages(requested, start, end, reverse=reverse)
         self._messages = _without(found, self._done) if self._done else found
         self._next = next(self._messages, None)
 
@@ -314,7 +314,7 @@ class SequentialWriter:
             writer.tick()
 
     def take_snapshot(self) -> bool:
-        """Write what is in the cache, in snapshot mode; return whether there was anything."""
+        """Write the messages in the cache, in snapshot mode; return whether there was anything."""
         writer = self._opened()
         if not self._snapshot:
             return False
@@ -396,7 +396,7 @@ class Info:
             return metadata_to(bag.metadata)
 
     def print_output(self, metadata_info: BagMetadata, sorting_method: str = "name") -> None:
-        """Print what `ros2 bag info` prints."""
+        """Print the summary of `ros2 bag info`."""
         _print(info_text(metadata_from(metadata_info), sorting_method))
 
     def print_output_topic_name_only(self, metadata_info: BagMetadata, sorting_method: str = "name") -> None:
@@ -405,7 +405,7 @@ class Info:
             _print(name)
 
     def print_output_verbose(self, uri: str, metadata_info: BagMetadata, sorting_method: str = "name") -> None:
-        """Print what `ros2 bag info -v` prints, which reads the whole bag."""
+        """Print the summary of `ros2 bag info -v`, which reads the whole bag."""
         with open_bag(Path(uri)) as bag:
             details = details_of(bag)
         _print(info_text(metadata_from(metadata_info), sorting_method, details))

@@ -239,7 +239,7 @@ class MetadataIo:
 
 
 def get_default_storage_id() -> str:
-    """Return the storage that is written unless another one is asked for."""
+    """Return the storage that is written unless another one is requested."""
     return "mcap"
 
 
@@ -385,7 +385,7 @@ class QoS:
     """Profile with setters that return it: `QoS(10).reliable().transient_local()`.
 
     Args:
-        history_depth: Number of samples that are kept.
+        history_depth: Number of samples that are stored.
     """
 
     def __init__(self, history_depth: int) -> None:

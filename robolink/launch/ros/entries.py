@@ -51,8 +51,8 @@ class Naming(NamedTuple):
     namespace: str
 
 
-class Wanted(NamedTuple):
-    """Node that a launch file wants: its program, and what is said of it."""
+class Requested(NamedTuple):
+    """Node that a launch file requests: its program, and what is said of it."""
 
     program: Program
     what: str
@@ -108,51 +108,51 @@ class EntryMaker:
             return None
         name = "" if action.requested_name is None else performed(context, action.requested_name)
         naming = Naming(name, namespace_of(action.requested_namespace, context))
-        wanted = Wanted(program, executable, naming, action.parameters, action.remappings, action.place)
-        action.expanded_name = wanted.full_name
+        requested = Requested(program, executable, naming, action.parameters, action.remappings, action.place)
+        action.expanded_name = requested.full_name
         words = list(texts_of(action.ros_arguments, context))
-        entry = self._entry_of(wanted, [words, *arguments], self._shared(action, context), context)
+        entry = self._entry_of(requested, [words, *arguments], self._shared(action, context), context)
         return entry if program.source is not None else _compiled(entry, program.path)
 
-    def shared(self, wanted: Wanted, action: ExecuteLocal, process: str, context: LaunchContext) -> Entry:
+    def shared(self, requested: Requested, action: ExecuteLocal, process: str, context: LaunchContext) -> Entry:
         """Return the entry of a component that shares a process.
 
         Args:
-            wanted: The component.
+            requested: The component.
             action: Action of its container, whose settings it has.
             process: Name of the process.
             context: The context with whose values it is performed.
         """
         settings = self._shared(action, context)
         settings.pop("prefix", None)
-        return self._entry_of(wanted, [[]], {**settings, "process": process}, context)
+        return self._entry_of(requested, [[]], {**settings, "process": process}, context)
 
     def _entry_of(
-        self, wanted: Wanted, words: Sequence[Any], settings: Mapping[str, Any], context: LaunchContext
+        self, requested: Requested, words: Sequence[Any], settings: Mapping[str, Any], context: LaunchContext
     ) -> Entry:
         """Return the entry of a node; the first of `words` are those behind `--ros-args`."""
-        name, namespace = wanted.naming
+        name, namespace = requested.naming
         if name:
             _check(validate_node_name, name)
-        place, source = wanted.place, wanted.program.source
+        place, source = requested.place, requested.program.source
 
         def say(text: str) -> None:
             self.say(f"{placed(place)}{text}")
 
         is_full = bool(name and namespace)
-        own = parameters_of(wanted.parameters, wanted.full_name, bool(name), context, say, is_full=is_full)
+        own = parameters_of(requested.parameters, requested.full_name, bool(name), context, say, is_full=is_full)
         of_ros, *others = words
         extra = [*own.words, *of_ros]
         node = NodeToStart(
-            node=wanted.what if source is None else source.spec,
+            node=requested.what if source is None else source.spec,
             name=name,
             namespace=namespace,
             parameters=own.values,
-            remappings=_remappings(wanted.remappings, context),
+            remappings=_remappings(requested.remappings, context),
             args=[*(["--ros-args", *extra, "--"] if extra else []), *others],
             **settings,
         )
-        return self._entry(place, wanted.full_name, node, source, own.wide, own.files)
+        return self._entry(place, requested.full_name, node, source, own.wide, own.files)
 
     def _program(self, package: str | None, executable: str, place: Place) -> Program:
         if package is not None:
@@ -414,8 +414,8 @@ def components(
             absent.setdefault(program.absent, []).append(plugin)
             continue
         naming = Naming(_text(each.node_name, context), namespace_of(each.node_namespace, context))
-        wanted = Wanted(program, plugin, naming, each.parameters or (), each.remappings or (), each.place)
-        yield maker.shared(wanted, action, process, context)
+        requested = Requested(program, plugin, naming, each.parameters or (), each.remappings or (), each.place)
+        yield maker.shared(requested, action, process, context)
     for reason, plugins in absent.items():
         maker.say(f"{placed(action.place)}left out: {_listed(plugins)} of container /{process}: {reason}")
 

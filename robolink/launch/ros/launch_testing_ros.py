@@ -117,7 +117,7 @@ class WaitForTopics:
     Args:
         topic_tuples: Topics, each with its type.
         timeout: Longest wait in seconds.
-        messages_received_buffer_length: Number of messages that are kept of each topic.
+        messages_received_buffer_length: Number of messages that are stored of each topic.
     """
 
     def __init__(
@@ -180,8 +180,8 @@ class WaitForTopics:
 
     def _hear(self, name: str) -> Callable[[Any], None]:
         def heard(message: Any) -> None:
-            kept = self._received.setdefault(name, deque(maxlen=self.messages_received_buffer_length))
-            kept.append(message)
+            stored = self._received.setdefault(name, deque(maxlen=self.messages_received_buffer_length))
+            stored.append(message)
             if not self.topics_not_received():
                 self._all_came.set()
 

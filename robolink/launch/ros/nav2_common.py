@@ -164,7 +164,7 @@ def _read(path: str) -> dict[str, Any]:
 
 
 def _value(text: str, convert: bool) -> Any:
-    """Return what a text spells: a truth value, or, with `convert`, a number."""
+    """Return the value that a text spells: a truth value, or, with `convert`, a number."""
     if text.strip().lower() in ("true", "false"):
         return text.strip().lower() == "true"
     if convert:

@@ -241,7 +241,7 @@ _EVERY = "/**"
 
 
 def _read(path: Path, text: str | None, say: Say) -> list[Override] | None:
-    """Return what a parameter file holds; None, with a line, for one that is not there: ROS 2 goes on without it."""
+    """Return the overrides in a parameter file; None, with a line, for a missing one: ROS 2 goes on without it."""
     if text is not None:
         return parse_parameter_file(text, os.fspath(path))
     package = package_not_here(os.fspath(path))

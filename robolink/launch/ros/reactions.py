@@ -172,7 +172,7 @@ class Reactions(Generic[T]):
         raise DocumentError(f"it never ends: more than {MOST_EVENTS:,} events follow from each other")
 
     def _take_over(self, now: float) -> None:
-        """Turn what the visit has asked for since the last look into requests and timers."""
+        """Turn what the visit has requested since the last look into requests and timers."""
         visit = self._visit
         said, visit.context.said[:] = list(visit.context.said), []
         self._requests += map(Tell, said)
@@ -233,8 +233,8 @@ class Reactions(Generic[T]):
             if isinstance(action, LifecycleNode) and action.expanded_name is not None:
                 self._own_lifecycles().watch(action.expanded_name)
                 with self._visit.placing(action):
-                    is_wanted = is_true(self._visit.context, action.autostart)
-                if is_wanted:
+                    starts_itself = is_true(self._visit.context, action.autostart)
+                if starts_itself:
                     self._visit.run(transitions(action.expanded_name, [1, 3]))
 
     def _change(self, event: ChangeState) -> None:

@@ -63,7 +63,7 @@ class NodeThread:
             self._node = Node(NODE, context=context, enable_rosout=False, start_parameter_services=False)
         except (RobolinkError, ValueError) as error:
             self._has_failed = True
-            self._say(f"nodes with a lifecycle cannot be asked for transitions: {error}")
+            self._say(f"transitions of nodes with a lifecycle cannot be requested: {error}")
             return
         executor.add_node(self._node)
         self._executor = executor

@@ -316,10 +316,10 @@ class Absences:
 
 
 def _fill(module: ModuleType) -> None:
-    module.__getattr__ = functools.partial(_asked, module.__name__)  # type: ignore[method-assign]
+    module.__getattr__ = functools.partial(_attribute, module.__name__)  # type: ignore[method-assign]
 
 
-def _asked(module: str, name: str) -> Absent:
+def _attribute(module: str, name: str) -> Absent:
     if name.startswith("__"):
         raise AttributeError(f"module '{module}' is not here and has no {name}")
     return Absent(module)

@@ -148,7 +148,7 @@ class Visit:
                 self.run_within(new, around)
 
     def following(self, handler: BaseEventHandler) -> list[LaunchDescriptionEntity]:
-        """Return what follows an event, as far as its handler knows it before."""
+        """Return the entities that follow an event, as far as its handler knows them before."""
         with self.placing(handler):
             return list(handler.describe()[1])
 
@@ -157,7 +157,7 @@ class Visit:
         self.within(around, lambda: self.run(entities))
 
     def within(self, around: Mapping[str, Mapping[str, Any]], act: Callable[[], T]) -> T:
-        """Return what `act()` returns, called with such values."""
+        """Return the result of `act()`, called with such values."""
         context = self.context
         context.extend_locals({name: each for name, each in around["locals"].items() if name != "event"})
         changed: list[tuple[dict[str, Any], str]] = []
@@ -404,6 +404,6 @@ def _help(declared: DeclareLaunchArgument, context: LaunchContext) -> ArgumentHe
 def _note_unread(context: LaunchContext, given: Mapping[str, str]) -> None:
     """Add a line for each given argument that nothing has declared or read: ROS 2 takes them in silence."""
     for name in given:
-        if name not in context.asked:
-            hint = nearest(name, context.asked) or f": there is {', '.join(sorted(context.asked)) or 'none'}"
+        if name not in context.requested:
+            hint = nearest(name, context.requested) or f": there is {', '.join(sorted(context.requested)) or 'none'}"
             context.said.append(f"nothing reads the argument '{shown(name)}'{hint}")

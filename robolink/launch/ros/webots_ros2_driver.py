@@ -139,7 +139,7 @@ class URDFSpawner(Node):
 
 
 def get_webots_driver_node(event: Any, driver_node: Any) -> Any:
-    """Return what follows a spawned robot.
+    """Return the entities that follow a spawned robot.
 
     Args:
         event: Event with a line of the spawner; its `text` says `success=True` once the robot is there.

@@ -287,7 +287,7 @@ def _mapping(text: str) -> dict[str, Any]:
 IGNORED = frozenset(
     ["cached_output", "emulate_tty", "log_cmd", "output", "output_format", "sigkill_timeout", "sigterm_timeout"]
 )
-"""Settings that ROS 2 has and that are of no effect here: all lines of all processes are shown and kept."""
+"""Settings that ROS 2 has and that are of no effect here: all lines of all processes are shown and stored."""
 
 
 class Executable:
@@ -421,7 +421,7 @@ class TimerAction(Action):
         self.is_canceled = False
 
     def seconds(self, context: LaunchContext) -> float:
-        """Return the period with the values of `context`; raises LaunchError for one that is no time."""
+        """Return the period with the values of `context`; raises LaunchError for one that is not a time."""
         text = str(self.period) if isinstance(self.period, (int, float)) else performed(context, self.period)
         try:
             seconds = float(text)
@@ -461,7 +461,7 @@ class RegisterEventHandler(Action):
         context.register_event_handler(self.event_handler)
 
     def describe_conditional_sub_entities(self) -> list[tuple[str, Iterable[LaunchDescriptionEntity]]]:
-        """Return what follows the event, as far as it is known."""
+        """Return the entities that follow the event, as far as they are known."""
         return [self.event_handler.describe()]
 
 

@@ -39,7 +39,7 @@ class Place(NamedTuple):
 
 
 def calling_place() -> Place:
-    """Return the place of the nearest frame that is no companion's: where the user's file makes an action.
+    """Return the place of the nearest frame outside of this room: where the user's file makes an action.
 
     It is unknown for an action that robolink itself makes.
     """
@@ -182,7 +182,7 @@ SomeActionsType = SomeEntitiesType
 
 
 class Event:
-    """Something that has happened, or that is asked for."""
+    """Something that has happened, or that is requested."""
 
     name = "launch.Event"
 
@@ -220,7 +220,7 @@ class BaseEventHandler:
         return self._matcher(event)
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
-        """Return what `event` brings about in `context`, where it is `context.locals.event`."""
+        """Return the entities that `event` brings about in `context`, where it is `context.locals.event`."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
@@ -307,7 +307,7 @@ class LaunchContext:
         """Actions that are done since the launcher last looked; none before there is a handler."""
         self.said: list[str] = []
         """Lines for people since the launcher last looked."""
-        self.asked: set[str] = set()
+        self.requested: set[str] = set()
         """Names of the launch configurations that were declared or read."""
         self.emitted: list[Event] = []
         """Events that were emitted and not handled yet."""

@@ -59,7 +59,7 @@ class OnActionEventBase(BaseEventHandler):
         return type(self).__name__, known
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
-        """Return what follows `event` in `context`."""
+        """Return the entities that follow `event` in `context`."""
         super().handle(event, context)
         return self._reaction(event, context) if callable(self._reaction) else self._reaction
 
@@ -99,7 +99,7 @@ class OnProcessExit(OnActionEventBase):
 
 
 class OnExecutionComplete(OnActionEventBase):
-    """Reaction to the end of an action that is no process.
+    """Reaction to the end of an action that is not a process.
 
     Args:
         target_action: The action, or a function that decides; None is any.
@@ -158,6 +158,6 @@ class OnShutdown(BaseEventHandler):
         return type(self).__name__, [] if callable(self._reaction) else entities_in(self._reaction)
 
     def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
-        """Return what follows `event` in `context`."""
+        """Return the entities that follow `event` in `context`."""
         super().handle(event, context)
         return self._reaction(event, context) if callable(self._reaction) else self._reaction

@@ -165,7 +165,7 @@ ProcessStdin = ProcessStdout = ProcessStderr = ProcessIO
 
 
 class ProcessTargetedEvent(Event):
-    """Something is asked of processes.
+    """A request to processes.
 
     Args:
         process_matcher: Function that decides whether the process of an action is meant.

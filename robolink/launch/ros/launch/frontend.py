@@ -133,8 +133,8 @@ def _made(arguments: Sequence[Argument], written: str) -> Substitution:
         raise SubstitutionSyntaxError(f"no substitution is called '{shown(name)}'{nearest(name, makers)}")
     least, most, maker = makers[name]
     if not least <= len(given) <= most:
-        wanted = str(least) if least == most else f"{least} to {most}" if most < MANY else f"{least} or more"
-        raise SubstitutionSyntaxError(f"$({name} ...) takes {wanted} arguments, got {len(given)}: {shown(written, 60)}")
+        number = str(least) if least == most else f"{least} to {most}" if most < MANY else f"{least} or more"
+        raise SubstitutionSyntaxError(f"$({name} ...) takes {number} arguments, got {len(given)}: {shown(written, 60)}")
     made: Substitution = maker(*given)
     return made
 

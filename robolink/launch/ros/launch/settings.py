@@ -85,13 +85,13 @@ class ResetLaunchConfigurations(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self._kept = dict(launch_configurations or {})
+        self._retained = dict(launch_configurations or {})
 
     def execute(self, context: LaunchContext) -> None:
         """Remove them from `context`."""
-        kept = {performed(context, name): performed(context, value) for name, value in self._kept.items()}
+        retained = {performed(context, name): performed(context, value) for name, value in self._retained.items()}
         context.launch_configurations.clear()
-        context.launch_configurations.update(kept)
+        context.launch_configurations.update(retained)
 
 
 class DeclareLaunchArgument(Action):
@@ -122,9 +122,9 @@ class DeclareLaunchArgument(Action):
         self.choices = None if choices is None else list(choices)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set the default value in `context` if none was given; raises LaunchError for a value that is no choice."""
+        """Set the default value in `context` if none was given; raises LaunchError for a value that is not a choice."""
         known = context.launch_configurations
-        context.asked.add(self.name)
+        context.requested.add(self.name)
         if self.name not in known:
             if self.default_value is None:
                 about = "" if self.description == self.NO_DESCRIPTION else f" ({shown(self.description)})"

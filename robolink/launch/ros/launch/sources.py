@@ -326,7 +326,7 @@ def _instead_of_maker(module: ModuleType) -> str:
 
 
 def _loaded(path: Path) -> ModuleType:
-    """Load a file as a module of its own: two packages may each have a `robot.launch.py`; no bytecode is kept."""
+    """Load a file as a module of its own: two packages may each have a `robot.launch.py`; no bytecode is stored."""
     name = f"launch file {path}"
     loader = SourceFileLoader(name, str(path))
     spec = spec_from_loader(name, loader)

@@ -83,7 +83,7 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the value; raises SubstitutionFailure if it is not set."""
         name, known = perform_substitutions(context, self.variable_name), context.launch_configurations
-        context.asked.add(name)
+        context.requested.add(name)
         if name in known:
             return str(known[name])
         if self.default is None:
@@ -424,11 +424,11 @@ class Command(Substitution):
         except (OSError, ValueError, subprocess.TimeoutExpired) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise SubstitutionFailure(f"'{shown(text)}' cannot be run: {reason}") from None
-        told = (done.stderr or b"").decode(errors="replace").strip()
+        reported = (done.stderr or b"").decode(errors="replace").strip()
         output = done.stdout.decode(errors="replace")
-        if done.returncode or (told and reaction == "fail"):
+        if done.returncode or (reported and reaction == "fail"):
             how = f"ended with exit code {done.returncode}" if done.returncode else "wrote to its standard error"
-            last = shown((told or output.strip()).rpartition("\n")[2], _SHOWN)
+            last = shown((reported or output.strip()).rpartition("\n")[2], _SHOWN)
             raise SubstitutionFailure(f"'{shown(text)}' {how}{': ' if last else ''}{last}")
         return output
 
@@ -447,11 +447,11 @@ def _run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) 
         subprocess.TimeoutExpired: if it takes too long.
     """
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, env=environment) as process:
-        kept: dict[str, bytes] = {}
+        stored: dict[str, bytes] = {}
 
         def keep(name: str, stream: IO[bytes]) -> None:
-            kept[name] = stream.read(LONGEST + 1)
-            if len(kept[name]) > LONGEST:
+            stored[name] = stream.read(LONGEST + 1)
+            if len(stored[name]) > LONGEST:
                 process.kill()
 
         streams = {"out": process.stdout, "err": process.stderr}
@@ -465,9 +465,9 @@ def _run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) 
             raise
         for each in readers:
             waits.join(each, PATIENCE)
-        if any(len(each) > LONGEST for each in kept.values()):
+        if any(len(each) > LONGEST for each in stored.values()):
             raise ValueError(f"it writes more than {LONGEST:,} bytes")
-        return subprocess.CompletedProcess(words, process.returncode, kept.get("out", b""), kept.get("err"))
+        return subprocess.CompletedProcess(words, process.returncode, stored.get("out", b""), stored.get("err"))
 
 
 def program_of(words: list[str], context: LaunchContext) -> list[str]:

@@ -123,9 +123,9 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
         argument_name: Its name, for the error.
         caller: Name of the function, for the error.
     """
-    wanted = tuple(types) if isinstance(types, Iterable) else (types,)
-    if not isinstance(argument, wanted):
-        names = " or ".join(each.__name__ for each in wanted)
+    expected = tuple(types) if isinstance(types, Iterable) else (types,)
+    if not isinstance(argument, expected):
+        names = " or ".join(each.__name__ for each in expected)
         where = f"{caller}: " if caller else ""
         raise LaunchArgumentError(f"{where}'{argument_name}' is {names}, got {_kind(argument)}")
 
@@ -189,16 +189,16 @@ def checked(value: Any, text: object) -> Any:
     return value
 
 
-def coerced(text: str, wanted: Any) -> Any:
-    """Return `text` as a value of the type `wanted`, None for what YAML reads.
+def coerced(text: str, expected: Any) -> Any:
+    """Return `text` as a value of the type `expected`, None for what YAML reads.
 
     Raises:
         LaunchError: for a text that is not of this type.
         LaunchArgumentError: for another type than bool, int, float, str or a list of one.
     """
-    if wanted is None:
+    if expected is None:
         return as_node_reads(value_in(text))
-    inner = item_type(wanted)
+    inner = item_type(expected)
     if inner is not None:
         value = value_in(text)
         if not isinstance(value, list) or not all(isinstance(each, inner) for each in value):
@@ -206,19 +206,19 @@ def coerced(text: str, wanted: Any) -> Any:
             raise LaunchError(f"expected a list of {inner.__name__}, got '{shown(text)}'{advice}")
         return value
     try:
-        if wanted is bool:
+        if expected is bool:
             return truth_of(text)
-        return {str: str, int: int, float: float}[wanted](text)
+        return {str: str, int: int, float: float}[expected](text)
     except KeyError:
-        raise LaunchArgumentError(f"value_type is str, int, float, bool or a list of one, got {wanted}") from None
+        raise LaunchArgumentError(f"value_type is str, int, float, bool or a list of one, got {expected}") from None
     except ValueError:
-        raise LaunchError(f"expected {wanted.__name__}, got '{shown(text)}'") from None
+        raise LaunchError(f"expected {expected.__name__}, got '{shown(text)}'") from None
 
 
-def item_type(wanted: Any) -> Any:
-    """Return the type of the items of a list type `wanted`, `List[int]`; None for a scalar type."""
-    arguments = typing.get_args(wanted)
-    return arguments[0] if arguments and typing.get_origin(wanted) in (list, Sequence) else None
+def item_type(expected: Any) -> Any:
+    """Return the type of the items of a list type `expected`, `List[int]`; None for a scalar type."""
+    arguments = typing.get_args(expected)
+    return arguments[0] if arguments and typing.get_origin(expected) in (list, Sequence) else None
 
 
 def truth_of(text: str) -> bool:

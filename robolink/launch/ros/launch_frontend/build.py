@@ -35,7 +35,7 @@ OTHER_TYPES = {"double": "float", "string": "str", "integer": "int", "boolean": 
 
 
 def parameters_in(entity: Entity) -> list[Any]:
-    """Return what the `param` elements of a node, `entity`, stand for, as the parameters of an action."""
+    """Return the parameters of an action for the `param` elements of a node, `entity`."""
     return [_parameter(each) for each in entity.inside("param")]
 
 
@@ -69,8 +69,8 @@ def _typed(entity: Entity, kind: Any) -> Any:
         return value
     checked(texts, value)
     inner = item_type(kind)
-    wanted = kind if inner is None else list
-    if kind is not None and not isinstance(value, wanted):
+    expected = kind if inner is None else list
+    if kind is not None and not isinstance(value, expected):
         raise LaunchError(f"'value' is of type {entity.texts('type')}, got {value!r:.40}")
     if inner is not None and not all(isinstance(each, inner) for each in texts):
         raise LaunchError(f"'value' is a {entity.texts('type')}, got {value!r:.40}")
@@ -188,7 +188,7 @@ def executable(entity: Entity, name: str = "name") -> dict[str, Any]:
 
 
 def pairs(entity: Entity, tag: str, name: str, value: str) -> dict[Any, Any]:
-    """Return what the children with a tag say, such as `<env name= value=>`, as a mapping of substitutions.
+    """Return the children with a tag, such as `<env name= value=>`, as a mapping of substitutions.
 
     Args:
         entity: The element.
@@ -366,12 +366,12 @@ def _include(entity: Entity) -> Action:
 def _group(entity: Entity) -> Action:
     _only_attributes(entity, ("scoped", "forwarding"))
     inside = [each for each in entity.children if each.name != "keep"]
-    kept = pairs(entity, "keep", "name", "value")
+    retained = pairs(entity, "keep", "name", "value")
     return actions.GroupAction(
         built(inside),
         scoped=_flag(entity, "scoped"),
         forwarding=_flag(entity, "forwarding"),
-        launch_configurations=kept or None,
+        launch_configurations=retained or None,
     )
 
 

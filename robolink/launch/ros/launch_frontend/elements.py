@@ -80,14 +80,14 @@ class Entity:
 
     def condition(self) -> Condition | None:
         """Take the condition of an action, `if` or `unless`, from the attributes; None if it has none."""
-        wanted, unwanted = (self.optional(each) for each in CONDITIONS)
+        if_text, unless_text = (self.optional(each) for each in CONDITIONS)
         for each in CONDITIONS:
             self.attributes.pop(each, None)
-        if wanted is not None and unwanted is not None:
+        if if_text is not None and unless_text is not None:
             raise self.error("it has 'if' and 'unless': one of them is enough")
-        if wanted is not None:
-            return IfCondition(wanted)
-        return None if unwanted is None else UnlessCondition(unwanted)
+        if if_text is not None:
+            return IfCondition(if_text)
+        return None if unless_text is None else UnlessCondition(unless_text)
 
     def texts(self, name: str, *kinds: type) -> str | None:
         """Return the text of an attribute, `name`; None if it is not there.
@@ -218,7 +218,7 @@ def _all(top: Entity) -> Iterator[Entity]:
 
 
 def _changed(top: Entity) -> Iterable[str]:
-    """Yield what ROS 2 writes for each word of ROS 1 in a file."""
+    """Yield ROS 2's spelling of each word of ROS 1 in a file."""
     for each in _all(top):
         yield _TAGS.get(each.name, "")
         yield from (_ATTRIBUTES.get((each.name, name), "") for name in each.attributes)

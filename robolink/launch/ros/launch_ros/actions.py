@@ -215,7 +215,7 @@ class LifecycleTransition(Action):
 
 def transitions(name: str, ids: Sequence[int]) -> list[LaunchDescriptionEntity]:
     """Return the actions that bring the node `name` through the transitions `ids`, one after the other."""
-    asks = [EmitEvent(event=_asked(name, each)) for each in ids]
+    asks = [EmitEvent(event=_request_of(name, each)) for each in ids]
     handlers: list[LaunchDescriptionEntity] = [
         RegisterEventHandler(OnStateTransition(matcher=_reaches(name, before), entities=[ask], handle_once=True))
         for before, ask in zip(ids, asks[1:], strict=False)
@@ -223,7 +223,7 @@ def transitions(name: str, ids: Sequence[int]) -> list[LaunchDescriptionEntity]:
     return [*handlers, asks[0]]
 
 
-def _asked(name: str, transition_id: int) -> ChangeState:
+def _request_of(name: str, transition_id: int) -> ChangeState:
     event = ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=transition_id)
     event.node_name = name
     return event
@@ -253,7 +253,7 @@ _GOALS = {1: "inactive", 2: "unconfigured", 3: "active", 4: "inactive", 5: "fina
 
 
 NAMESPACE, REMAPS, PARAMETERS = "ros_namespace", "ros_remaps", "global_params"
-"""Launch configurations in which they are kept, as in ROS 2."""
+"""Launch configurations in which they are stored, as in ROS 2."""
 
 
 def joined(around: str, namespace: str) -> str:

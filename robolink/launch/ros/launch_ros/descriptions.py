@@ -89,16 +89,16 @@ class ParameterValue:
 
     def evaluate(self, context: LaunchContext) -> Any:
         """Return the plain value, with the values of `context`. Raises LaunchError."""
-        value, wanted = self.value, self.value_type
+        value, expected = self.value, self.value_type
         if isinstance(value, SCALARS):
-            return _instance(value, wanted)
+            return _instance(value, expected)
         if is_substitution(value):
-            return coerced(performed(context, value), wanted)
+            return coerced(performed(context, value), expected)
         if not isinstance(value, Sequence) or isinstance(value, bytes):
             raise LaunchArgumentError(f"a parameter is a plain value, a list or substitutions, got {_kind(value)}")
-        inner = item_type(wanted)
-        if wanted is not None and inner is None:
-            raise LaunchArgumentError(f"expected {wanted.__name__}, got a list")
+        inner = item_type(expected)
+        if expected is not None and inner is None:
+            raise LaunchArgumentError(f"expected {expected.__name__}, got a list")
         found = [
             _instance(each, inner) if isinstance(each, SCALARS) else coerced(performed(context, each), inner)
             for each in value
@@ -106,11 +106,11 @@ class ParameterValue:
         return _uniform(found, found)
 
 
-def _instance(value: Any, wanted: Any) -> Any:
-    """Return a plain `value` that is of the type `wanted`, None for any. Raises LaunchArgumentError otherwise."""
-    if wanted is None or (wanted in SCALARS and isinstance(value, wanted)):
+def _instance(value: Any, expected: Any) -> Any:
+    """Return a plain `value` that is of the type `expected`, None for any. Raises LaunchArgumentError otherwise."""
+    if expected is None or (expected in SCALARS and isinstance(value, expected)):
         return value
-    name = wanted.__name__ if isinstance(wanted, type) and not typing.get_args(wanted) else wanted
+    name = expected.__name__ if isinstance(expected, type) and not typing.get_args(expected) else expected
     raise LaunchArgumentError(f"value_type is {name}, and {value!r} is a {type(value).__name__}")
 
 
@@ -152,7 +152,7 @@ class ParameterFile:
         return Path(perform_substitutions(context, self.param_file))
 
     def substituted(self, context: LaunchContext) -> str | None:
-        """Return the file's text with the values of `context` put in; None where that is not wanted.
+        """Return the file's text with the values of `context` put in; None where that is not requested.
 
         Raises LaunchError, also for a file that cannot be read.
         """

@@ -55,8 +55,8 @@ class StateTransition(Event):
 
 def matches_node_name(node_name: str) -> Callable[[Any], bool]:
     """Return a function that is true for the action whose node has the full name `node_name`."""
-    wanted = full_name(node_name)
-    return lambda action: getattr(action, "expanded_name", None) == wanted
+    expected = full_name(node_name)
+    return lambda action: getattr(action, "expanded_name", None) == expected
 
 
 def full_name(node_name: str) -> str:
@@ -88,11 +88,11 @@ class OnStateTransition(EventHandler):
         matcher: Callable[[Event], bool] | None = None,
         **kwargs: Any,
     ) -> None:
-        wanted = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
+        expected = {"transition": transition, "start_state": start_state, "goal_state": goal_state}
 
         def is_meant(event: Event) -> bool:
             if not isinstance(event, StateTransition) or target_lifecycle_node not in (None, event.action):
                 return False
-            return all(label is None or getattr(event, name) == label for name, label in wanted.items())
+            return all(label is None or getattr(event, name) == label for name, label in expected.items())
 
         super().__init__(matcher=matcher or is_meant, entities=entities, **kwargs)

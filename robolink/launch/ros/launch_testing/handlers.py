@@ -324,7 +324,7 @@ class ActiveIoHandler(IoHandler):
         """Wait until a condition holds; return whether it does.
 
         Args:
-            condition: The condition; it is asked again whenever something was written.
+            condition: The condition; it is checked again whenever something was written.
             timeout: Longest wait in seconds; None has no limit.
         """
         return waits.wait_for(self._changed, condition, timeout)
@@ -440,7 +440,7 @@ class ActiveProcInfoHandler(ProcInfoHandler):
         """Wait until a condition holds; return whether it does.
 
         Args:
-            condition: The condition; it is asked again whenever a process has started or ended.
+            condition: The condition; it is checked again whenever a process has started or ended.
             timeout: Longest wait in seconds; None has no limit.
         """
         return waits.wait_for(self._changed, condition, timeout)

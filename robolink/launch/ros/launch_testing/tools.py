@@ -45,13 +45,13 @@ def basic_output_filter(
     prefixes = tuple(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = [re.compile(each) for each in filtered_patterns or ()]
 
-    def kept(output: str) -> str:
+    def filtered(output: str) -> str:
         lines = output.splitlines(keepends=True)
         return "".join(
             each for each in lines if not each.startswith(prefixes) and not any(one.match(each) for one in patterns)
         )
 
-    return kept
+    return filtered
 
 
 def expected_output_from_file(path: str) -> list[str] | list[re.Pattern[str]]:
