@@ -21,7 +21,7 @@ from hypothesis import HealthCheck, settings
 
 from robolink import Context, VirtualTime, logging, try_shutdown
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from robolink.host.patches.snapshot import process_as_before
+from robolink.host.patches.environment import process_as_before
 from robolink.impl.log_output import Record, output
 from robolink.transport import joining, shared_memory, zenoh, zenoh_handles
 from robolink.transport.memory import Bus, MemoryTransport

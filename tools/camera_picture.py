@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from msgspec import structs
 
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.sim import Pose, World, load_world
 from robolink.sim.rendering.shooting import Shot
 from robolink.sim.sensors import Camera

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.sim.colours import Colour, colour_of
 from robolink.sim.physics.convex import convex_parts
 from robolink.sim.scene.raster import Layer

@@ -11,14 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robolink.geometry.rotations import (
+    EPS,
     Angles,
+    Matrix,
+    Vector,
     euler_from_matrix,
     euler_matrix,
     quaternion_about_axis,
     quaternion_from_matrix,
     quaternion_matrix,
+    split_matrix,
+    unit_vector,
 )
-from robolink.geometry.vectors import EPS, Matrix, Vector, split_matrix, unit_vector
 
 
 def identity_matrix() -> Matrix:

@@ -37,8 +37,6 @@ from robolink.geometry.rotations import (
     quaternion_slerp,
     random_quaternion,
     random_rotation_matrix,
-)
-from robolink.geometry.vectors import (
     random_vector,
     unit_vector,
     vector_norm,

@@ -8,7 +8,7 @@ import sysconfig
 from functools import cache
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from robolink.host.participants import Runner
@@ -65,3 +65,17 @@ def where_waits(runner: Runner) -> str:
     """Return, for an error message, which program waits at which line."""
     name = "somebody" if runner.program is None else runner.program.name
     return f"{name} at {place_of(frame_of(runner)) or 'an unknown place'}"
+
+
+class RealTimeUse(NamedTuple):
+    """A use of real time by a program: what it did, and where in its code (``file:line``)."""
+
+    program: str
+    what: str
+    place: str
+
+
+def note_use(program: Any, what: str, frame: FrameType) -> None:
+    """Record a use of real time, at the line of the program's own code that led to this frame, if there is one."""
+    if place := place_of(frame):  # else it was recorded where the thread was started
+        program.host.note_real_time(program, what, place)

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from robolink import compat, logging
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import NotFoundError
+from robolink.host.call_sites import RealTimeUse
 from robolink.host.pace import Pace
 from robolink.host.participants import HostError, ProgramLike
+from robolink.host.patches.environment import process_as_before
 from robolink.host.patches.install import adopt, install, uninstall
-from robolink.host.patches.snapshot import process_as_before
 from robolink.host.program import Part, Program
-from robolink.host.real_time_use import RealTimeUse
 from robolink.impl.log_output import output
 from robolink.launch.shared_process import Member
 from robolink.running.defaults import get_defaults

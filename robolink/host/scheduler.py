@@ -20,8 +20,7 @@ from robolink.host.background_threads import BackgroundThreads
 from robolink.host.call_sites import name_of, where_is, where_waits
 from robolink.host.participants import CALLBACKS, OUTSIDE, HostedInbox, HostError, Job, Killed, Runner, Runners, Wait
 from robolink.host.patches.environment import ProcessView
-from robolink.host.threads import end_thread, tell_of
-from robolink.host.workers import Worker
+from robolink.host.threads import Worker, end_thread, tell_of
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import VirtualTime
 from robolink.system import clocks

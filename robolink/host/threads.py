@@ -13,7 +13,7 @@ from typing import Any
 
 from robolink.exceptions import ExternalShutdownException
 from robolink.host.call_sites import frame_of, place_of
-from robolink.host.participants import Killed, ProgramLike, Runner, Wait
+from robolink.host.participants import Killed, ProgramLike, Runner, SchedulerLike, Wait
 from robolink.logging import get_logger
 from robolink.running.defaults import use_defaults
 from robolink.text.tracebacks import formatted
@@ -129,3 +129,30 @@ class HostedPool(Executor):
             self._wake(self._idle.popleft())
         for thread in self._threads if wait else ():
             thread.join()
+
+
+class Worker(threading.Thread):
+    """Worker thread: runs what is due when it is its turn."""
+
+    _acts_as_main = False
+
+    def __init__(self, scheduler: SchedulerLike, work: Callable[[Runner], None]) -> None:
+        super().__init__(name="robolink host", daemon=True)
+        self.runner = Runner(scheduler)
+        self.runner.is_host = True
+        self.runner.thread = self
+        self._work = work
+        self.start()
+
+    @property
+    def daemon(self) -> bool:  # type: ignore[override]
+        """True until it runs: it keeps no process from ending. Threads that a program starts inherit False from it."""
+        return not self._acts_as_main
+
+    def run(self) -> None:
+        """Run turns until the host is closed."""
+        self._acts_as_main = True
+        try:
+            self._work(self.runner)
+        except Killed:
+            return

@@ -13,7 +13,7 @@ from robolink.grading.mistakes import Mistake, fit_text
 
 if TYPE_CHECKING:
     from robolink.geometry.plane import Pose
-    from robolink.host.host_time import HostTime
+    from robolink.host.pace import HostTime
     from robolink.sim import World
     from robolink.sim.description import Shape
     from robolink.world_node import Simulation

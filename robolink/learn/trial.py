@@ -184,7 +184,7 @@ class Trial:
 
 
 def _tracker_of(system: System) -> Tracker | None:
-    from robolink.host.host_time import HostTime
+    from robolink.host.pace import HostTime
     from robolink.learn.report import Tracker
 
     time = system.node.context.time

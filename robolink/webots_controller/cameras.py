@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from robolink.image import ImageError, to_array
 from robolink.image.blobs import Blob, find_blobs
-from robolink.image.codecs import encoded
-from robolink.image.png import png_of
+from robolink.image.codecs import encoded, png_of
 from robolink.interfaces.sensor_msgs.msg import CameraInfo, Image
 from robolink.subscription import Subscription
 from robolink.webots_controller.sensors import Sensor

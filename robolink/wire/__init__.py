@@ -13,18 +13,18 @@ from robolink.wire.attachment import (
     pair_opener,
     unpack_attachment,
 )
-from robolink.wire.keys import NO_HASH, DataKey, buffer_key, demangle_type, format_key, mangle_type, parse_key
-from robolink.wire.profiles import format_qos, parse_qos
-from robolink.wire.text import LONGEST
+from robolink.wire.keys import LONGEST, NO_HASH, DataKey, buffer_key, demangle_type, format_key, mangle_type, parse_key
 from robolink.wire.tokens import (
     CPU_BACKEND,
     OTHER_END,
     EndpointKind,
     EndpointToken,
     NodeToken,
+    format_qos,
     format_token,
     graph_pattern,
     own_tokens,
+    parse_qos,
     parse_token,
 )
 

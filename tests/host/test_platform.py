@@ -9,7 +9,7 @@ import pytest
 from robolink import Context, Node, logging
 from robolink.executors import SingleThreadedExecutor
 from robolink.host.driver import HostDriver
-from robolink.host.host_time import HostTime
+from robolink.host.pace import HostTime
 from robolink.running.defaults import get_defaults
 from robolink.transport.memory import MemoryTransport
 from tests.support.hosts import Stage

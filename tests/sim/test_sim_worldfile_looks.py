@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robolink.exceptions import DocumentError
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.sim import World, load_world
 from robolink.sim.scene.scenery import scenery
 from robolink.sim.worldfile import check_world

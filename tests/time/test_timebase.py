@@ -97,7 +97,7 @@ def test_a_clock_cannot_stand_still_or_go_back(drift: float) -> None:
 
 
 def host_time() -> TimeBase:
-    from robolink.host.host_time import HostTime
+    from robolink.host.pace import HostTime
 
     made = HostTime(0)
     made.scheduler.close()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from robolink.image import to_array
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.testing import System
 from tools.docs_site.markdown import blocks
 from tools.docs_site.pages import DOCS

@@ -16,11 +16,10 @@ from robolink.context import Context
 from robolink.exceptions import RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.image import to_array
-from robolink.image.codecs import encoded
+from robolink.image.codecs import encoded, png_of
 from robolink.image.conversion import Pixels, convert
 from robolink.image.encodings import ImageError, encoding_of, encoding_of_array
 from robolink.image.opencv import opencv
-from robolink.image.png import png_of
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image
 from robolink.system import clocks
 from robolink.system.terminal import shown

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from robolink.documents.yamlfile import DocumentNotFoundError
 from robolink.exceptions import DocumentError, RobolinkError, nearest
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.interfaces.geometry_msgs.msg import Point, Pose, Quaternion
 from robolink.interfaces.nav_msgs.msg import MapMetaData, OccupancyGrid
 from robolink.sim.maps.gridmap import load_map

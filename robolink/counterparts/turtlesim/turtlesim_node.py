@@ -15,7 +15,7 @@ from robolink.counterparts.turtlesim.picture import BACKGROUND, Canvas, Colour, 
 from robolink.counterparts.turtlesim.turtle import CENTRE, PERIOD, SIZE, Pen, Rotation, Turtle
 from robolink.counterparts.turtlesim.window import draw_in_terminal, terminal_room, window
 from robolink.exceptions import ExternalShutdownException
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.rcl_interfaces.msg import ParameterEvent
 from robolink.interfaces.sensor_msgs.msg import CompressedImage

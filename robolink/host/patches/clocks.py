@@ -15,9 +15,8 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import thread as pools
 from typing import Any
 
-from robolink.host.call_sites import is_users
+from robolink.host.call_sites import is_users, note_use
 from robolink.host.participants import ProgramLike
-from robolink.host.real_time_use import note_use
 from robolink.host.waiting import runner_of
 from robolink.running.defaults import get_defaults
 

@@ -7,8 +7,8 @@ import selectors
 import sys
 from typing import Any
 
+from robolink.host.call_sites import note_use
 from robolink.host.participants import ProgramLike
-from robolink.host.real_time_use import note_use
 from robolink.running.defaults import get_defaults
 
 _LOOP = f"asyncio{os.sep}base_events.py"

@@ -8,9 +8,8 @@ import sys
 import types
 from typing import Any
 
-from robolink.host.call_sites import is_users
+from robolink.host.call_sites import is_users, note_use
 from robolink.host.participants import ProgramLike
-from robolink.host.real_time_use import note_use
 from robolink.running.defaults import get_defaults
 
 _real_handle, _real_popen = signal.signal, subprocess.Popen.__init__

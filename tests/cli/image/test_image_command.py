@@ -15,8 +15,7 @@ from numpy.testing import assert_array_equal
 from robolink import Node
 from robolink.cli.main import main
 from robolink.image import to_message
-from robolink.image.codecs import encoded
-from robolink.image.png import png_of
+from robolink.image.codecs import encoded, png_of
 from robolink.interfaces.sensor_msgs.msg import CompressedImage, Image
 from robolink.interfaces.std_msgs.msg import String
 from tests.support.opencvs_conversions import some_image

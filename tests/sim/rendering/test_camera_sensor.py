@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robolink.exceptions import DocumentError
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.sim import Shot, World, load_world
 from robolink.sim.worldfile import check_world
 

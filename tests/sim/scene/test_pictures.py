@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.sim.maps.image import ImageError
 from robolink.sim.scene import pictures
 from robolink.sim.scene.pictures import kept_picture, read_picture

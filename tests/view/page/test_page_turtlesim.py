@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robolink.counterparts.turtlesim.turtlesim_node import TurtleSim
-from robolink.image.png import png_of
+from robolink.image.codecs import png_of
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import CompressedImage
 from robolink.interfaces.turtlesim.action import RotateAbsolute
