@@ -29,7 +29,7 @@ WHOLE = (
     "",
     "companions",
     "control",
-    "executors",
+    "executors.py",
     "geometry",
     "impl/rcutils_logger.py",
     "launch/ros/launch",
