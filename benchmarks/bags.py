@@ -59,7 +59,7 @@ class Work(NamedTuple):
 
 
 def works() -> list[Work]:
-    """Return what is written: Twists, scans of 360 beams, and images of 1 MB and of 6 MB."""
+    """Return the messages to write: Twists, scans of 360 beams, and images of 1 MB and of 6 MB."""
     chance = random.Random(1)
     twists = [Twist() for _ in range(1000)]
     for each in twists:

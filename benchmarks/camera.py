@@ -124,7 +124,7 @@ def outline(cells: int = 110, side: float = 0.25) -> WorldDescription:
 
 
 def setting_of(description: WorldDescription) -> tuple[Setting, Any]:
-    """Return what is seen of a world, and the places of what moves, at the start."""
+    """Return the shapes that a camera sees of a world, and the places of what moves, at the start."""
     seen = scenery(description)
     things = [(seen.movable[index], description.obstacles[index].start) for index in seen.movable]
     things += [(seen.robots[each.name], each.pose) for each in description.robots]
@@ -163,8 +163,8 @@ def speed() -> Iterator[str]:
     around = [view_from((15.2, 15.4, 0.25), turn * 0.9, 0.05) for turn in range(7)]
     for size in ((320, 240), (640, 480)):
         least, median = image_times(walls, size, around)
-        told = f"{least:.2f} ms, median {median:.2f}{' (goal 15)' if size == (320, 240) else ''}"
-        yield f"{len(walls.walls):,} walls of a map, {size[0]} x {size[1]}: {told}"
+        reported = f"{least:.2f} ms, median {median:.2f}{' (goal 15)' if size == (320, 240) else ''}"
+        yield f"{len(walls.walls):,} walls of a map, {size[0]} x {size[1]}: {reported}"
 
 
 def exact(poses: int) -> Iterator[str]:
@@ -191,10 +191,10 @@ def exact(poses: int) -> Iterator[str]:
         (640, 480, 1.5),
         (320, 240, 1.0),
     ):
-        yield f"tag at {distance:g} m, {width} x {height}: {tags_told((width, height), distance, poses)}"
+        yield f"tag at {distance:g} m, {width} x {height}: {tags_reported((width, height), distance, poses)}"
 
 
-def tags_told(size: tuple[int, int], distance: float, poses: int) -> str:
+def tags_reported(size: tuple[int, int], distance: float, poses: int) -> str:
     """Return how far tags are off in random views."""
     corners, places, missed = tag_errors(size, distance, poses)
     mean, deviation = np.abs(corners.mean(axis=(0, 1))).max(), math.sqrt((corners**2).mean())
@@ -233,12 +233,12 @@ def virtual(seconds: float) -> Iterator[str]:
             begin = time.perf_counter()
             executor.spin_until_future_complete(Future(), timeout_sec=seconds)
             spent = time.perf_counter() - begin
-    told = ", ".join(f"{count} {kind.__name__}" for kind, count in counts.items())
-    yield f"camera 320 x 240 at 10 Hz, lidar and odometry: {seconds / spent:.0f} times life (goal 25); heard {told}"
+    reported = ", ".join(f"{count} {kind.__name__}" for kind, count in counts.items())
+    yield f"camera 320 x 240 at 10 Hz, lidar and odometry: {seconds / spent:.0f} times life (goal 25); heard {reported}"
 
 
 def real(seconds: float) -> Iterator[str]:
-    """Yield what a world takes of a core that publishes images at 30 Hz to another process, and what is lost."""
+    """Yield the share of a core of a world that publishes images at 30 Hz to another process, and what is lost."""
     for size in ((320, 240), (640, 480)):
         with tempfile.TemporaryDirectory() as folder:
             world = written(folder, 100.0 / 3.0, size)
@@ -275,16 +275,16 @@ def main() -> None:
     parser.add_argument("--only", choices=("speed", "exact", "virtual", "real"))
     parser.add_argument("--poses", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=60.0)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     logging.set_console_handler(None)
     parts: dict[str, Callable[[], Iterator[str]]] = {
         "speed": speed,
-        "exact": lambda: exact(asked.poses),
-        "virtual": lambda: virtual(asked.seconds),
-        "real": lambda: real(min(asked.seconds, 20.0)),
+        "exact": lambda: exact(options.poses),
+        "virtual": lambda: virtual(options.seconds),
+        "real": lambda: real(min(options.seconds, 20.0)),
     }
     for name, part in parts.items():
-        if asked.only in (None, name):
+        if options.only in (None, name):
             for line in part():
                 print(line, flush=True)
 

@@ -129,8 +129,8 @@ def seconds(row: Row) -> float:
     done = subprocess.run(row.command, env=ENVIRONMENT, capture_output=True, text=True, check=False, timeout=60)
     took = time.perf_counter() - started
     if row.shown not in done.stdout or done.stdout.count("\n") < row.lines:
-        wanted = f"'{row.shown}' and {row.lines} lines"
-        raise SystemExit(f"{row.name}: expected {wanted}, got {len(done.stdout)} bytes: {done.stdout}{done.stderr}")
+        expected = f"'{row.shown}' and {row.lines} lines"
+        raise SystemExit(f"{row.name}: expected {expected}, got {len(done.stdout)} bytes: {done.stdout}{done.stderr}")
     return took
 
 
@@ -141,16 +141,16 @@ def report(runs: int, processes: int) -> bool:
     columns = list(zip(*rounds, strict=True))
     medians = [statistics.median(column) for column in columns]
     bare = medians[[row.name for row in ROWS].index("bare Zenoh script")]
-    kept = True
+    stored = True
     print(f"{NODES} nodes and {TOPICS} topics in {processes} processes; {runs} runs, median and worst in ms")
     print(f"{'':56} median  worst  / bare  limit")
     for row, median, column in zip(ROWS, medians, columns, strict=True):
         verdict = ""
         if row.limit is not None:
-            verdict = f"{row.limit * 1e3:5.0f} {'kept' if median < row.limit else 'BROKEN'}"
-            kept = kept and median < row.limit
+            verdict = f"{row.limit * 1e3:5.0f} {'stored' if median < row.limit else 'BROKEN'}"
+            stored = stored and median < row.limit
         print(f"{row.name:56} {median * 1e3:6.0f} {max(column) * 1e3:6.0f} {median / bare:7.2f}  {verdict}".rstrip())
-    return kept
+    return stored
 
 
 def main() -> None:

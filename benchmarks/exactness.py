@@ -50,7 +50,7 @@ def report() -> None:
 
 
 def lidar_error(rooms: int = 200) -> float:
-    """Give the largest difference in metres between the lidar and rays that are cast one by one, in random scenes."""
+    """Return the largest difference in metres between the lidar and rays that are cast one by one, in random scenes."""
     random, beams, worst = np.random.default_rng(3), Beams(Lidar("scan")), 0.0
     for _ in range(rooms):
         ends = random.uniform(-8.0, 8.0, (30, 2))
@@ -88,7 +88,7 @@ def corner_leaks(rooms: int = 2800) -> tuple[int, int]:
 
 
 def arc_error() -> float:
-    """Give how far odometry and pose are from the circle after a minute, in metres, for some speeds."""
+    """Return how far odometry and pose are from the circle after a minute, in metres, for some speeds."""
     worst = 0.0
     for v, w in ((0.5, 0.0), (0.3, 1.0), (-0.4, 0.7), (1.0, -2.0), (0.0, 1.5)):
         description = RobotDescription(name="r", pose=Pose(0.0, 0.0), drive=SHARP)
@@ -122,7 +122,7 @@ def tunnelling(angles: int = 60) -> tuple[int, int]:
 
 
 def penetration() -> float:
-    """Give how deep a robot at 0.5 m/s has been inside a wall at most, in metres, from some angles."""
+    """Return how deep a robot at 0.5 m/s has been inside a wall at most, in metres, from some angles."""
     deepest = 0.0
     for heading in (0.0, 0.3, 0.8, -1.1):
         world = walled(heading, Drive(timeout=1000.0))
@@ -135,13 +135,13 @@ def penetration() -> float:
 
 
 def walled(heading: float, drive: Drive) -> World:
-    """Give a world with a robot, and a long wall 3 m ahead of it."""
+    """Return a world with a robot, and a long wall 3 m ahead of it."""
     robot = RobotDescription(name="r", pose=Pose(0.0, 0.0, heading), drive=drive)
     return World(WorldDescription(walls=(Wall(((3.0, -60.0), (3.0, 60.0))),), robots=(robot,)))
 
 
 def same_bytes() -> bool:
-    """Whether two processes publish the same in ten seconds of a noisy laboratory."""
+    """Return whether two processes publish the same in ten seconds of a noisy laboratory."""
     command = [sys.executable, "-m", "robolink", "simulate", "lab", "--duration", "10", "--json"]
     runs = [subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True).stdout for _ in range(2)]
     return len({json.loads(run.splitlines()[-1])["hash"] for run in runs}) == 1

@@ -47,14 +47,14 @@ _Controller: Any = load_node(find_node("reactive_controller"))
 
 
 class Meter:
-    """What this process takes of a core after warming up."""
+    """Return the share of a core of this process after warming up."""
 
     def __init__(self) -> None:
         self.end_of_warm_up = time.perf_counter() + WARM_UP
         self._begun: tuple[float, float] | None = None
 
     def is_warm(self) -> bool:
-        """Whether it is time to measure; the first time, CPU time is counted from then on."""
+        """Return whether it is time to measure; the first time, CPU time is counted from then on."""
         now = time.perf_counter()
         if now < self.end_of_warm_up:
             return False
@@ -124,7 +124,7 @@ class Controller(_Controller):  # type: ignore[misc]
 def tell(node: Any, what: dict[str, Any]) -> None:
     """Print figures for the process that asked for them; once, though a node may be destroyed twice."""
     if not getattr(node, "told", False):
-        node.told = True
+        node.reported = True
         print(MARK + json.dumps(what), flush=True)
 
 
@@ -132,7 +132,7 @@ def tell(node: Any, what: dict[str, Any]) -> None:
 
 
 class Figures(NamedTuple):
-    """What came of a run; the real-time factor is the slowest robot's, lateness is in milliseconds."""
+    """Result of a run; the real-time factor is the slowest robot's, lateness is in milliseconds."""
 
     robots: int
     sent: int
@@ -151,33 +151,33 @@ def run(robots: int, seconds: float, world: Path, apart: bool) -> Figures:
     output = io.StringIO()
     code = Supervisor(plan(Path(__file__), text=text), output=output).run(WARM_UP + seconds + 1.0)
     lines = output.getvalue().splitlines()
-    told = [json.loads(line.partition(MARK)[2]) for line in lines if MARK in line]
-    if code or len(told) != robots + 1:
+    reported = [json.loads(line.partition(MARK)[2]) for line in lines if MARK in line]
+    if code or len(reported) != robots + 1:
         raise SystemExit(
             "\n".join(
                 [
                     *(line for line in lines if MARK not in line),
-                    f"exit code {code}, {len(told)} of {robots + 1} nodes have told",
+                    f"exit code {code}, {len(reported)} of {robots + 1} nodes have told",
                 ]
             )
         )
-    return figures(told)
+    return figures(reported)
 
 
-def figures(told: Sequence[dict[str, Any]]) -> Figures:
+def figures(reported: Sequence[dict[str, Any]]) -> Figures:
     """Put together what the nodes have told."""
-    counts = [each["counts"] for each in told if "counts" in each]
-    spans = [(each["stamps"][0], each["stamps"][-1]) for each in told if len(each.get("stamps", ())) > 1]
+    counts = [each["counts"] for each in reported if "counts" in each]
+    spans = [(each["stamps"][0], each["stamps"][-1]) for each in reported if len(each.get("stamps", ())) > 1]
     factors = [(end[0] - begin[0]) / (end[1] - begin[1]) for begin, end in spans]
-    cpu = {name: max(each.get(name, 0.0) for each in told) for name in ("simulation", "controllers")}
+    cpu = {name: max(each.get(name, 0.0) for each in reported) for name in ("simulation", "controllers")}
     sent, received, disorder = (sum(each[name] for each in counts) for name in ("sent", "received", "disorder"))
-    late = sorted(late / 1000 for each in told for late in each.get("late", ()))
+    late = sorted(late / 1000 for each in reported for late in each.get("late", ()))
     robots = sum(each["received"] > 0 for each in counts)
     return Figures(robots, sent, received, disorder, min(factors, default=0.0), late, cpu)
 
 
 def smaller_world(name: str, robots: int, folder: Path) -> Path:
-    """Give the file of a world with so many of its robots."""
+    """Return the file of a world with so many of its robots."""
     path = find_world(name)
     data: Any = parse(read_text(path), name=str(path))
     data["robots"] = data["robots"][:robots]
@@ -186,10 +186,10 @@ def smaller_world(name: str, robots: int, folder: Path) -> Path:
     return smaller
 
 
-def report(found: Figures, asked: int) -> None:
+def report(found: Figures, requested: int) -> None:
     late = found.late or [0.0]
     lost = found.sent - found.received
-    print(f"{found.robots} of {asked} robots driven")
+    print(f"{found.robots} of {requested} robots driven")
     print(f"  scans sent {found.sent:,}, received {found.received:,}, lost {lost}, out of order {found.disorder}")
     print(f"  real-time factor {found.factor:.4f} (goal {GOAL})")
     print(f"  scan to callback, ms: p50 {statistics.median(late):.1f}, p99 {late[len(late) * 99 // 100]:.1f}", end="")

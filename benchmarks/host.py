@@ -81,11 +81,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=600.0)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     logging.set_console_handler(None)
     with tempfile.TemporaryDirectory() as folder:
-        for kind, seconds in (("classes", asked.seconds), ("scripts", asked.seconds), ("waiting", asked.seconds / 10)):
-            found = [life(files(Path(folder), kind), seconds) for _ in range(asked.runs)]
+        for kind, seconds in (
+            ("classes", options.seconds),
+            ("scripts", options.seconds),
+            ("waiting", options.seconds / 10),
+        ):
+            found = [life(files(Path(folder), kind), seconds) for _ in range(options.runs)]
             switches = found[0][1]
             count = switches if kind == "waiting" else round(seconds * 150)
             cost = statistics.median(each[0] for each in found) / count * 1e6

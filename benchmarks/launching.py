@@ -113,7 +113,7 @@ def generate_launch_description():
 
 
 class Taken(NamedTuple):
-    """What one start and stop took: seconds, the share of a core, and each process's own memory in MiB."""
+    """Cost of one start and stop: seconds, the share of a core, and each process's own memory in MiB."""
 
     up: float
     down: float
@@ -159,7 +159,7 @@ def write_workspace(folder: Path, nodes: int) -> None:
 
 
 def commands(system: str, nodes: int) -> list[list[str]]:
-    """What is to be started by hand for a system."""
+    """Return the commands to start by hand for a system."""
     if system == "run":
         return [[sys.executable, "-m", "robolink", "run", "nodes/member.py"]]
     if system in ("bare", "script"):
@@ -206,13 +206,13 @@ def own_memory(processes: Sequence[psutil.Process]) -> float:
 
 def seconds_to_stop(processes: Sequence[subprocess.Popen[bytes]]) -> float:
     """Interrupt processes, wait for their end."""
-    asked = time.perf_counter()
+    options = time.perf_counter()
     for process in processes:
         process.send_signal(signal.SIGINT)
     for process in processes:
         if process.wait(PATIENCE) != 0:
             raise SystemExit(f"{process.args!r} ended with exit code {process.returncode}")
-    return time.perf_counter() - asked
+    return time.perf_counter() - options
 
 
 def report(rounds: int, nodes: int, idle: float, systems: Sequence[str]) -> bool:
@@ -234,15 +234,15 @@ def report(rounds: int, nodes: int, idle: float, systems: Sequence[str]) -> bool
             up, down = found[ours].up / found[bare].up, found[ours].down / found[bare].down
             print(f"{LABELS[ours]} / {LABELS[bare]}: up {up:.2f}, down {down:.2f}")
     silent, run = found.get("silent"), found.get("run")
-    kept = silent is None or (silent.up < UP and silent.down < DOWN and silent.idle < IDLE)
-    kept = kept and (run is None or run.up < RUN)
+    stored = silent is None or (silent.up < UP and silent.down < DOWN and silent.idle < IDLE)
+    stored = stored and (run is None or run.up < RUN)
     python = found.get("python")
     if silent is not None and python is not None:
         print(f"a ROS 2 file takes {python.up - silent.up:+.2f} s more to be up than robolink's own of the same nodes")
-        kept = kept and python.up - silent.up < MORE
-    wanted = f"of 30 nodes: up {UP} s, down {DOWN} s, idle {IDLE:.0%}; of one: up {RUN} s; a ROS 2 file: +{MORE} s"
-    print(f"wanted {wanted}: {'kept' if kept else 'BROKEN'}")
-    return kept
+        stored = stored and python.up - silent.up < MORE
+    expected = f"of 30 nodes: up {UP} s, down {DOWN} s, idle {IDLE:.0%}; of one: up {RUN} s; a ROS 2 file: +{MORE} s"
+    print(f"wanted {expected}: {'stored' if stored else 'BROKEN'}")
+    return stored
 
 
 def main() -> None:

@@ -129,7 +129,7 @@ def show(found: dict[str, list[float]]) -> dict[str, Any]:
 
 
 def show_flood(row: str, asked: argparse.Namespace) -> dict[str, Any]:
-    """Print what was received in a second and lost, and the share of the first."""
+    """Print the messages received in a second and lost, and the share of the first."""
     kind = row.removeprefix("flood-")
     found: dict[str, list[Flood]] = rounds_of(
         contenders(row, asked), asked.rounds, lambda each: flood(each, kind, asked.seconds)

@@ -32,7 +32,7 @@ def mujoco_camera(
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
 
-    def told(size: tuple[int, int]) -> str:
+    def reported(size: tuple[int, int]) -> str:
         renderer, least = mujoco.Renderer(model, size[1], size[0]), []
         renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
         for x, y, z, yaw, pitch in views:
@@ -48,7 +48,7 @@ def mujoco_camera(
         renderer.close()
         return f"MuJoCo {statistics.mean(least):.2f} ms"
 
-    return told
+    return reported
 
 
 def _scene(setting: Setting, places: Any) -> str:

@@ -37,7 +37,7 @@ class Peer(NamedTuple):
 
 
 def installed(module: str) -> bool:
-    """Whether a module can be imported here."""
+    """Return whether a module can be imported here."""
     try:
         importlib.import_module(module)
     except ImportError:

@@ -67,13 +67,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--nodes", type=int, default=20)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
-        write_workspace(Path(name), asked.nodes)
-        taken = [[seconds_to_start(kind, Path(name), asked.nodes) for kind in KINDS] for _ in range(asked.rounds)]
+        write_workspace(Path(name), options.nodes)
+        taken = [[seconds_to_start(kind, Path(name), options.nodes) for kind in KINDS] for _ in range(options.rounds)]
     without, over = (statistics.median(each) for each in zip(*taken, strict=True))
     ratio = statistics.median(keys / plain for plain, keys in taken)
-    print(f"{asked.nodes} nodes up: {without:.2f} s without keys, {over:.2f} s over TLS; {ratio:.2f} times (<= {MOST})")
+    print(
+        f"{options.nodes} nodes up: {without:.2f} s without keys, {over:.2f} s over TLS; {ratio:.2f} times (<= {MOST})"
+    )
     raise SystemExit(0 if ratio <= MOST else 1)
 
 

@@ -181,7 +181,7 @@ def main() -> None:
     parser.add_argument("--python", action="append", default=[])
     parser.add_argument("--beside", metavar="CHECKOUT", help="another checkout of robolink, to be run by turns")
     parser.add_argument("--only", choices=("follow", "loop"))
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     own = str(Path(__file__).parent.parent)
     with tempfile.TemporaryDirectory() as folder:
         for name, text in (("loop.py", NODES), ("loop.yaml", LAUNCH), ("faults.yaml", FAULTS)):
@@ -191,8 +191,8 @@ def main() -> None:
             ("follow", ("follow", "--duration", "600"), 0, 6.0),
             ("loop", words, 3600 * 50 * 3, 4.0),
         ):
-            if asked.only in (None, name):
-                measure(name, asked, Turns(own, given, folder, events), limit)
+            if requested.only in (None, name):
+                measure(name, requested, Turns(own, given, folder, events), limit)
 
 
 class Turns(NamedTuple):
@@ -204,15 +204,15 @@ class Turns(NamedTuple):
     events: int
 
 
-def measure(name: str, asked: argparse.Namespace, turns: Turns, limit: float) -> None:
+def measure(name: str, requested: argparse.Namespace, turns: Turns, limit: float) -> None:
     """Run a system by turns with its peers, and print what they took."""
     runs: list[Run] = []
     others: list[Run] = []
     peers: dict[str, list[float]] = {"a bare heap": [], "SimPy's timeouts": []}
-    for python in [sys.executable] * asked.runs + asked.python:
+    for python in [sys.executable] * requested.runs + requested.python:
         runs.append(run(python, turns.source, *turns.words, folder=turns.folder))
-        if asked.beside:
-            others.append(run(python, str(Path(asked.beside).resolve()), *turns.words, folder=turns.folder))
+        if requested.beside:
+            others.append(run(python, str(Path(requested.beside).resolve()), *turns.words, folder=turns.folder))
         if turns.events:
             peers["a bare heap"].append(bare_heap(turns.events))
             if (seconds := simpy_timeouts(turns.events)) is not None:

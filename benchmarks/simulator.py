@@ -60,7 +60,7 @@ SHOWN = ("room", "maze")
 
 
 def lidars(rounds: int) -> None:
-    """Print what a scan costs, for each world and number of beams."""
+    """Print the cost of a scan, for each world and number of beams."""
     print("Lidar: microseconds a scan, and how many times as long as robolink's")
     for (name, world), beams in itertools.product(WORLDS.items(), BEAMS):
         description = world()
@@ -92,7 +92,7 @@ def own_scanner(description: WorldDescription, beams: int) -> Scan:
 
 
 def by_turns(scanners: dict[str, Scan], places: Sequence[Place], rounds: int) -> dict[str, list[float]]:
-    """Give the seconds a scan of each scanner in each round; its first scan of a round does not count."""
+    """Return the seconds a scan of each scanner in each round; its first scan of a round does not count."""
     took: dict[str, list[float]] = {name: [] for name in scanners}
     for _ in range(rounds):
         for name, scan in scanners.items():
@@ -106,7 +106,7 @@ def by_turns(scanners: dict[str, Scan], places: Sequence[Place], rounds: int) ->
 
 
 def free_places(description: WorldDescription, count: int) -> list[Place]:
-    """Give places at which nothing is, the same each time."""
+    """Return places at which nothing is, the same each time."""
     world, random = World(description), np.random.default_rng(1)
     width, height = description.world.size or (10.0, 10.0)
     found: list[Place] = []
@@ -184,7 +184,7 @@ def world_node(context: Context, description: WorldDescription) -> Node:
 
 
 def topics(description: WorldDescription) -> Iterator[tuple[str, type[Any]]]:
-    """Give the topics of the robots, with their types."""
+    """Return the topics of the robots, with their types."""
     yield "/tf", TFMessage
     for robot in description.robots:
         prefix = f"/{robot.name}/" if len(description.robots) > 1 else "/"
@@ -195,7 +195,7 @@ def topics(description: WorldDescription) -> Iterator[tuple[str, type[Any]]]:
 
 
 def irsim_factor(description: WorldDescription, count: int) -> float:
-    """Give ir-sim's real-time factor with steps of 0.1 s, over at least three of them and two seconds."""
+    """Return ir-sim's real-time factor with steps of 0.1 s, over at least three of them and two seconds."""
     places = [(robot.pose.x, robot.pose.y, robot.pose.theta) for robot in description.robots]
     env = irsim_world(fixed_segments(description), places, 360, REACH)
     action = [np.array([[0.3], [0.5]])] * count
@@ -216,13 +216,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--seconds", type=float, default=10.0)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     logging.set_console_handler(None)
     absent = [peer.name for peer in PEERS if not installed(peer.module)]
     if absent:
         print(f"not installed, so not compared: {', '.join(absent)}\n")
-    lidars(asked.rounds)
-    worlds(asked.seconds)
+    lidars(options.rounds)
+    worlds(options.seconds)
     exactness.report()
 
 

@@ -115,15 +115,15 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     buffer, taking, peer, time = filled(), filled(), Peer(), 2 * STEP * STAMPS // 3 + 3_333_333
     check(buffer, peer, time)
-    asked, last = Time(nanoseconds=time), f"f{FRAMES}"
+    options, last = Time(nanoseconds=time), f"f{FRAMES}"
     new = iter([sample(FRAMES - 1, at) for at in range(STAMPS, STAMPS + rounds * CALLS)])
     programs: dict[str, Callable[[], Any]] = {
-        "lookup between two stamps": lambda: buffer.lookup_transform_core("f0", last, asked),
+        "lookup between two stamps": lambda: buffer.lookup_transform_core("f0", last, options),
         "  the same by numpy": lambda: peer.numpy(time),
         "  the same by scipy": lambda: peer.scipy(time),
         "lookup of the latest": lambda: buffer.lookup_transform_core("f0", last, Time()),
-        "lookup of one frame in its parent": lambda: buffer.lookup_transform_core("f0", "f1", asked),
-        "can_transform": lambda: buffer.can_transform_core("f0", last, asked),
+        "lookup of one frame in its parent": lambda: buffer.lookup_transform_core("f0", "f1", options),
+        "can_transform": lambda: buffer.can_transform_core("f0", last, options),
         "set_transform": lambda: taking.set_transform(next(new), "benchmark"),
     }
     figures: dict[str, list[float]] = {name: [] for name in programs}

@@ -141,9 +141,9 @@ class LightClient:
                     break
         return Seen(messages, frames, size, sorted(delays), self.subscribed)
 
-    def _subscribe(self, told: dict[str, object]) -> None:
-        channels = told.get("channels")
-        if told["op"] == "advertise" and isinstance(channels, list):
+    def _subscribe(self, reported: dict[str, object]) -> None:
+        channels = reported.get("channels")
+        if reported["op"] == "advertise" and isinstance(channels, list):
             self.subscribed += len(channels)
             self.send("subscribe", subscriptions=[{"id": each["id"], "channelId": each["id"]} for each in channels])
 
@@ -200,20 +200,20 @@ class Load:
     """The publishing process, and what it tells of itself."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.told: list[dict[str, float]] = []
+        self.reported: list[dict[str, float]] = []
         assert process.stdout is not None
         self._lines = process.stdout
         self._lines.readline()
         threading.Thread(target=self._read, daemon=True).start()
 
     def _read(self) -> None:
-        self.told.extend(json.loads(line) for line in self._lines)
+        self.reported.extend(json.loads(line) for line in self._lines)
 
     def figures(self, begin: int) -> str:
-        """Return what the robots felt since the line `begin`."""
-        told = self.told[begin:] or [{"late": 0.0, "cpu": 0.0}]
-        late = 1000 * max(each["late"] for each in told)
-        cpu = sum(each["cpu"] for each in told) / len(told)
+        """Return the contacts of the robots since the line `begin`."""
+        reported = self.reported[begin:] or [{"late": 0.0, "cpu": 0.0}]
+        late = 1000 * max(each["late"] for each in reported)
+        cpu = sum(each["cpu"] for each in reported) / len(reported)
         return f"steps late by {late:.0f} ms at most, {100 * cpu:.0f} % of a core"
 
 
@@ -225,7 +225,7 @@ def serve(protocol: str, seconds: float, environment: dict[str, str], robots: Lo
         process.stdout.readline()
         client = LightClient(port, protocol)
         client.read(SETTLING)
-        told = len(robots.told)
+        reported = len(robots.reported)
         used = psutil.Process(process.pid)
         before, begin = used.cpu_times(), time.perf_counter()
         seen = client.read(seconds)
@@ -236,7 +236,7 @@ def serve(protocol: str, seconds: float, environment: dict[str, str], robots: Lo
         print(f" in {seen.frames / spent:,.0f} frames, {seen.bytes / spent / 1e6:.1f} MB/s")
         print(f"  server {100 * cpu:.1f} % of a core, {used.memory_info().rss / 1e6:.0f} MB of memory")
         print(f"  delay in the server: half within {middle:.1f} ms, 99 % within {late:.1f} ms")
-        print(f"  the robots meanwhile: {robots.figures(told)}")
+        print(f"  the robots meanwhile: {robots.figures(reported)}")
 
 
 def main() -> None:

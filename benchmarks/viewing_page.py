@@ -111,13 +111,13 @@ def watched(browser: Browser, seconds: float, server: int, robots: int) -> dict[
     begin = time.perf_counter()
     time.sleep(seconds)
     took = time.perf_counter() - begin
-    told = browser.js(
+    reported = browser.js(
         "({ painted: robolink.painted, arrived: arrived_, frames: frames_,"
         " messages: robolink.store.messages - before_ })"
     )
     after = psutil.cpu_times()
     cpu = {name: (sum(map(spent, each)) - before[name]) / took for name, each in parts.items()}
-    return {**told, "cpu": cpu, "seconds": took, "idle": (after.idle - idle.idle) / took / (os.cpu_count() or 1)}
+    return {**reported, "cpu": cpu, "seconds": took, "idle": (after.idle - idle.idle) / took / (os.cpu_count() or 1)}
 
 
 def spent(process: psutil.Process) -> float:
@@ -130,25 +130,27 @@ def share(values: list[float], part: float) -> float:
     return values[min(len(values) - 1, int(part * len(values)))] if values else math.nan
 
 
-def report(browser: Browser, args: argparse.Namespace, told: dict[str, Any], shown: float) -> None:
-    frames = told["frames"]
+def report(browser: Browser, args: argparse.Namespace, reported: dict[str, Any], shown: float) -> None:
+    frames = reported["frames"]
     gaps = [after[0] - before[0] for before, after in itertools.pairwise(frames)]
     span = (frames[-1][0] - frames[0][0]) / 1000
-    print(f"{args.robots} robots, {told['messages'] / told['seconds']:.0f} messages/s; data after {shown:.2f} s")
+    print(
+        f"{args.robots} robots, {reported['messages'] / reported['seconds']:.0f} messages/s; data after {shown:.2f} s"
+    )
     print(f"  frames: {len(gaps) / span:.1f} a second; gap p50 {share(gaps, 0.5):.1f} p99 {share(gaps, 0.99):.1f} ms")
     work = [each[1] for each in frames]
     print(f"  work of a frame: p50 {share(work, 0.5):.1f} p99 {share(work, 0.99):.1f} ms")
-    arrived = told["arrived"]
+    arrived = reported["arrived"]
     print(f"  stamp to arrival in the page: p50 {share(arrived, 0.5):.1f} p99 {share(arrived, 0.99):.1f} ms")
-    for kind in sorted({each[0] for each in told["painted"]}):
-        ages = [each[1] for each in told["painted"] if each[0] == kind]
+    for kind in sorted({each[0] for each in reported["painted"]}):
+        ages = [each[1] for each in reported["painted"] if each[0] == kind]
         within = sum(age <= 50 for age in ages) / len(ages)
         print(
             f"  stamp to paint, {kind}: p50 {share(ages, 0.5):.1f} p99 {share(ages, 0.99):.1f} ms;"
             f" {100 * within:.2f} % within 50 ms ({len(ages)})"
         )
-    cpu = ", ".join(f"{name} {100 * value:.0f} %" for name, value in told["cpu"].items())
-    print(f"  CPU of a core: {cpu}; machine idle {100 * told['idle']:.0f} %")
+    cpu = ", ".join(f"{name} {100 * value:.0f} %" for name, value in reported["cpu"].items())
+    print(f"  CPU of a core: {cpu}; machine idle {100 * reported['idle']:.0f} %")
     if args.picture:
         browser.screenshot(args.picture)
     if browser.problems:

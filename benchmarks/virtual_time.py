@@ -38,12 +38,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--seconds", type=float, default=60.0)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     logging.set_console_handler(None)
     for controller, world in SYSTEMS:
-        median = statistics.median(life(controller, world, asked.seconds) for _ in range(asked.runs))
-        times = asked.seconds / median
-        print(f"{controller} in {world}: {asked.seconds:g} s in {median:.2f} s, {times:.0f} times as fast as life")
+        median = statistics.median(life(controller, world, options.seconds) for _ in range(options.runs))
+        times = options.seconds / median
+        print(f"{controller} in {world}: {options.seconds:g} s in {median:.2f} s, {times:.0f} times as fast as life")
 
 
 if __name__ == "__main__":

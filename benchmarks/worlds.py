@@ -18,7 +18,7 @@ _SIDE = 2.0
 
 
 def room(robots: int = 1, beams: int = 360, seed: int = 7) -> WorldDescription:
-    """Give a room of 10 x 10 m with 14 boxes: 60 segments. Up to about 120 robots fit.
+    """Return a room of 10 x 10 m with 14 boxes: 60 segments. Up to about 120 robots fit.
 
     Each robot has a lidar with so many beams, 10 times a second, and odometry 50 times a second; fewer robots stand
     where the first of more do.
@@ -40,7 +40,7 @@ def room(robots: int = 1, beams: int = 360, seed: int = 7) -> WorldDescription:
 
 
 def maze(robots: int = 1, beams: int = 360, seed: int = 7) -> WorldDescription:
-    """Give a maze of 40 x 40 m, in which one way leads from each of its 2 m cells to each other: 401 segments.
+    """Return a maze of 40 x 40 m, in which one way leads from each of its 2 m cells to each other: 401 segments.
 
     It grows with more than 400 robots, so that each has a cell of its own: 64 x 64 m for 1000. They are as in `room`.
     """
@@ -67,7 +67,7 @@ def _free_place(drawn: random.Random, radius: float, taken: list[tuple[float, fl
 
 
 def _closed(drawn: random.Random, across: int) -> list[tuple[Cell, Cell]]:
-    """Give the neighbouring cells with a wall between them, after all cells were reached from the first."""
+    """Return the neighbouring cells with a wall between them, after all cells were reached from the first."""
     way, reached, opened = [(0, 0)], {(0, 0)}, set()
     while way:
         around = [cell for cell in _neighbours(way[-1], across) if cell not in reached]
@@ -89,13 +89,13 @@ def _neighbours(cell: Cell, across: int) -> list[Cell]:
 
 
 def _between(one: Cell, other: Cell) -> tuple[Point, Point]:
-    """Give the wall between a cell and its right or upper neighbour."""
+    """Return the wall between a cell and its right or upper neighbour."""
     x, y = other[0] * _SIDE, other[1] * _SIDE
     return ((x, y), (x, y + _SIDE)) if other[0] > one[0] else ((x, y), (x + _SIDE, y))
 
 
 def _rim(across: int) -> tuple[Point, ...]:
-    """Give the corners of the outer wall, which has a joint every two cells."""
+    """Return the corners of the outer wall, which has a joint every two cells."""
     whole, steps = across * _SIDE, [2 * _SIDE * index for index in range(across // 2)]
     sides: list[Callable[[float], Point]] = [
         lambda way: (way, 0.0),

@@ -135,18 +135,18 @@ class BlobChaser(ImageController):
         """Drive to the largest blob of a colour that is left, or search one."""
         settings, dt = self.settings, seconds or PERIOD
         image = self.bridge.imgmsg_to_cv2(message, "bgr8")
-        wanted = [colour for colour in settings.colours if colour not in self.found]
-        blobs = [blob for colour in wanted if (blob := find_blob(image, colour, settings)) is not None]
+        missing = [colour for colour in settings.colours if colour not in self.found]
+        blobs = [blob for colour in missing if (blob := find_blob(image, colour, settings)) is not None]
         if self.seen.get_subscription_count():
             self.seen.publish(self.bridge.cv2_to_imgmsg(drawn(image, blobs), "bgr8", message.header))
         if self.pause_left > 0.0:
             self.pause_left -= dt
             return Twist(), f"standing before the {self.found[-1]} blob"
-        if not wanted:
+        if not missing:
             return Twist(), f"found {', '.join(self.found) or 'nothing, as no colour is wanted'}: standing still"
         if not blobs:
             turn = Vector3(z=self.side * settings.turn_speed)
-            return Twist(angular=turn), f"searching {' or '.join(wanted)}, turning {'left' if turn.z > 0 else 'right'}"
+            return Twist(angular=turn), f"searching {' or '.join(missing)}, turning {'left' if turn.z > 0 else 'right'}"
         blob = max(blobs, key=lambda each: each.area)
         self.side = math.copysign(1.0, -blob.offset)
         if is_near(blob, settings) and abs(blob.offset) < MIDDLE:

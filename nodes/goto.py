@@ -57,7 +57,7 @@ class Trip:
         self.arrived = False
         """True once it has reached the position, and only turns."""
         self.checkpoint: Pose | None = None
-        self.moved_at = self.told_at = now
+        self.moved_at = self.reported_at = now
 
     def note_movement(self, pose: Pose, now: Time) -> None:
         """Note progress, if the robot has moved since the last time."""
@@ -244,9 +244,9 @@ class Goto(Node):
     def tell(self, trip: Trip, left: Left, limits: Limits) -> None:
         """Publish feedback, once every `FEEDBACK_PERIOD`."""
         now = self.odom_at
-        if (now - trip.told_at).nanoseconds < FEEDBACK_PERIOD * 1e9:
+        if (now - trip.reported_at).nanoseconds < FEEDBACK_PERIOD * 1e9:
             return
-        trip.told_at = now
+        trip.reported_at = now
         remaining = left.distance / limits.speed + abs(left.turn) / limits.turn_speed
         feedback = NavigateToPose.Feedback(
             current_pose=self.here,

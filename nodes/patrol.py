@@ -73,7 +73,7 @@ def _rows_of_list(numbers: Any) -> list[list[float]]:
     except (TypeError, ValueError):
         raise WaypointsError(f"expected a text or a list of numbers, got {numbers!r:.80}") from None
     if len(flat) % 3:
-        raise WaypointsError(f"a list has x, y and theta of each waypoint, but {len(flat)} numbers are no such threes")
+        raise WaypointsError(f"a list has x, y and theta of each waypoint, but {len(flat)} numbers are not such threes")
     return [flat[at : at + 3] for at in range(0, len(flat), 3)]
 
 

@@ -219,7 +219,7 @@ def find_signs(image: Pixels, pictures: dict[str, Pixels]) -> list[Sign]:
 
 
 def cut_out(image: Pixels) -> Iterator[tuple[tuple[int, int, int, int], Pixels]]:
-    """Yield what may be a sign: its box (left, top, width, height), and what is in it, brought to one size."""
+    """Yield the candidates for a sign: the box (left, top, width, height), and what is in it, brought to one size."""
     hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
     mask = np.zeros(image.shape[:2], np.uint8)
     for low, high in HUES:

@@ -216,7 +216,7 @@ class StateMachine(Node):
             self.get_logger().warning(words)
 
     def view(self, lasted: float) -> View:
-        """Return what the sensors tell now."""
+        """Return the present readings of the sensors."""
         angles, ranges = returns(self.scan)
         free, behind = (lane_ahead(angles + turn, ranges, self.settings.half_width) for turn in (0.0, math.pi))
         ahead = np.cos(angles) > 0.0

@@ -58,7 +58,7 @@ Older form: x y z yaw pitch roll FRAME CHILD, or x y z qx qy qz qw FRAME CHILD
 
 
 class UsageError(RobolinkError, ValueError):
-    """Arguments that are no transform."""
+    """Arguments that are not a transform."""
 
 
 class StaticTransformPublisher(Node):

@@ -341,8 +341,8 @@ def find_tag(
     """
     rows, columns = image.shape[:2]
     if (camera.width, camera.height) != (columns, rows):
-        wanted = f"{camera.width} x {camera.height}"
-        raise ImageError(f"an image of {columns} x {rows} pixels, and the calibration is for {wanted}")
+        expected = f"{camera.width} x {camera.height}"
+        raise ImageError(f"an image of {columns} x {rows} pixels, and the calibration is for {expected}")
     all_corners, numbers, _ = detector.detectMarkers(image)
     for corners, number in zip(all_corners, () if numbers is None else numbers.ravel().tolist(), strict=True):
         if number == settings.tag:

@@ -107,7 +107,7 @@ class Teleop(Node):
             speeds = Speeds(self.get_parameter("speed").value, self.get_parameter("turn_speed").value)
             if key in SPEED_STEPS:
                 self.set_speeds(changed(speeds, key))
-            elif (twist := wanted(key, speeds)) is not None:
+            elif (twist := twist_of(key, speeds)) is not None:
                 lasts = self.get_parameter("timeout").value * self.get_parameter("rate").value
                 self.twist, self.ticks_left = twist, max(2, round(lasts))
         if self.ticks_left > 0:
@@ -141,7 +141,7 @@ class Teleop(Node):
         super().destroy_node()
 
 
-def wanted(key: str, speeds: Speeds) -> Twist | None:
+def twist_of(key: str, speeds: Speeds) -> Twist | None:
     """Return the velocity of a key; None for a key without meaning."""
     if key not in DIRECTIONS:
         return None

@@ -36,7 +36,7 @@ ROUTE = "0x10 90x5 0x5"
 
 FRAME, BASE = "odom", "walker"
 
-KEPT = 2000
+STORED = 2000
 """Most positions kept on `walk_path` and in a walk's history; the oldest are dropped."""
 
 MOST_STEPS = 1_000_000
@@ -72,7 +72,7 @@ class Walk:
         self.heading = 0.0
         """Direction of the last step, in degrees."""
         self.steps = 0
-        self.history = deque([self.position], maxlen=KEPT)
+        self.history = deque([self.position], maxlen=STORED)
 
     def take_step(self, direction: float, length: float = STEP_LENGTH) -> None:
         """Turn to a direction and take one step."""
@@ -146,7 +146,7 @@ class Walker(Node):
         self.walk, self.ahead = Walk(), deque[float]()
         """`ahead` holds the directions of the steps that are still to be taken on the route."""
         self.velocity, self.velocity_until = Twist(), 0
-        self.poses = deque[PoseStamped](maxlen=KEPT)
+        self.poses = deque[PoseStamped](maxlen=STORED)
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.walk_pose = self.create_publisher(PoseStamped, "walk_pose", latched)
         self.steps = self.create_publisher(Int32, "steps", latched)

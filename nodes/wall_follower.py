@@ -194,8 +194,8 @@ def keep(wall: Target, left: float, goal: Goal, pace: Pace) -> float:
     Where things on the `left` leave no room for the distance it holds the middle.
     """
     hold = max(goal.robot_radius + CLEARANCE, min(pace.distance, (wall.distance + left) / 2))
-    wanted = pace.gain / 5 * (wall.distance - hold) / max(pace.speed, 0.1)
-    return wall.bearing + math.pi / 2 - clipped(wanted, STEEP)
+    expected = pace.gain / 5 * (wall.distance - hold) / max(pace.speed, 0.1)
+    return wall.bearing + math.pi / 2 - clipped(expected, STEEP)
 
 
 def drive(off: float, free: float, goal: Goal, pace: Pace) -> tuple[float, float]:

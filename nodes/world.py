@@ -37,9 +37,9 @@ class SimulatedWorld(Node):
 
     def __init__(self, **options: Any) -> None:
         super().__init__("world", **options)
-        wanted = self.declare_parameter("world", "obstacles", WORLD).value
+        expected = self.declare_parameter("world", "obstacles", WORLD).value
         with warnings_to(self.get_logger().warning):  # what is left out of a world of Webots
-            description = load_world(find_world(wanted))
+            description = load_world(find_world(expected))
         rtf = self.declare_parameter("rtf", description.world.rtf, RTF).value
         seed = self.declare_parameter("seed", description.world.seed, SEED).value
         publish_clock = self.declare_parameter("publish_clock", False, PUBLISH_CLOCK).value
@@ -70,7 +70,7 @@ class SimulatedWorld(Node):
         self.create_timer(2.0, self.report, clock=self.runner.steady)
         self.add_post_set_parameters_callback(self.on_parameters)
         robots = listed(list(self.simulation.world.robots))
-        self.get_logger().info(f"world '{description.world.name or wanted}' with {robots}")
+        self.get_logger().info(f"world '{description.world.name or expected}' with {robots}")
 
     def destroy_node(self) -> None:
         """End the thread of the cameras, too."""

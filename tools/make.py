@@ -116,8 +116,8 @@ def lacking(name: str, other: str) -> str:
         names = ["python{}.{}".format(OLDEST[0], minor) for minor in range(NEWEST, OLDEST[1] - 1, -1)]
         found = next(filter(runs, names), "")
         advice = "here is a newer one: " + other.format(name, found) if found else "install one from python.org"
-        wanted = "{}.{}".format(*OLDEST)
-        return "robolink needs Python {} or newer, and {} is {}; {}".format(wanted, sys.executable, this, advice)
+        expected = "{}.{}".format(*OLDEST)
+        return "robolink needs Python {} or newer, and {} is {}; {}".format(expected, sys.executable, this, advice)
     if sysconfig.get_platform() in NO_WHEELS:
         return "this Python ({}) is for {}, for which libraries that robolink needs have no wheels; {}".format(
             sys.executable, NO_WHEELS[sysconfig.get_platform()], "install the 64-bit (x64) Python from python.org"
@@ -179,7 +179,7 @@ def python_of(venv: Path) -> Path:
 
 
 def tell(words: str) -> None:
-    """Print what comes now, at once."""
+    """Print the next step, at once."""
     print("robolink: " + words, flush=True)
 
 

@@ -194,7 +194,7 @@ def until_it_moves(steps: Iterable[Step]) -> tuple[float, float]:
     raise AssertionError("the page moves no robot")
 
 
-def told(title: str, steps: list[Step]) -> str:
+def reported(title: str, steps: list[Step]) -> str:
     """Return the lines about one reading of the page."""
     whole, waits = until_it_moves(steps)
     rows = [f"{step.seconds:6.1f} s  {step.words}{' (the robot moves)' * step.moves}" for step in steps]
@@ -234,7 +234,7 @@ def main(words: list[str]) -> int:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         try:
             for title, steps in visits(Path(name), wheel, options.python, options.once):
-                sys.stdout.write(told(title, steps))
+                sys.stdout.write(reported(title, steps))
                 whole, waits = until_it_moves(steps)
                 code |= whole - waits > LIMIT
         except (AssertionError, subprocess.CalledProcessError) as error:

@@ -25,12 +25,12 @@ DROPPED = {"typing", "typing_extensions", "__future__", "rpyutils", "_rclpy", "r
 
 
 def is_public(name: str) -> bool:
-    """Whether a name is part of the face, and no handle of the C library."""
+    """Return whether a name is part of the face, and no handle of the C library."""
     return not name.startswith("_") and name not in ("handle", "capsule") and not name.startswith("get_c_")
 
 
 def name_of(node: ast.expr | None) -> str:
-    """Give the last name in ``a.b[c](d)``: b."""
+    """Return the last name in ``a.b[c](d)``: b."""
     if isinstance(node, ast.Subscript):
         return name_of(node.value)
     if isinstance(node, ast.Call):
@@ -39,7 +39,7 @@ def name_of(node: ast.expr | None) -> str:
 
 
 def signature(function: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
-    """Give the parameters without their types; text that `def f(...)` takes."""
+    """Return the parameters without their types; text that `def f(...)` takes."""
     args = function.args
     for each in [*args.posonlyargs, *args.args, *args.kwonlyargs, args.vararg, args.kwarg]:
         if each is not None:
@@ -48,7 +48,7 @@ def signature(function: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
 
 
 def methods(body: list[ast.stmt]) -> tuple[dict[str, str], dict[str, str]]:
-    """Give the functions with their signatures, and the properties: r or rw."""
+    """Return the functions with their signatures, and the properties: r or rw."""
     calls: dict[str, str] = {}
     properties: dict[str, str] = {}
     for each in body:
@@ -71,7 +71,7 @@ def methods(body: list[ast.stmt]) -> tuple[dict[str, str], dict[str, str]]:
 
 
 def described_class(node: ast.ClassDef) -> dict[str, object]:
-    """Give what a class has."""
+    """Return the members of a class."""
     calls, properties = methods(node.body)
     made = {
         "bases": [name_of(base) for base in node.bases],
@@ -83,7 +83,7 @@ def described_class(node: ast.ClassDef) -> dict[str, object]:
 
 
 def targets(body: list[ast.stmt]) -> set[str]:
-    """Give the public names that statements bind to a value."""
+    """Return the public names that statements bind to a value."""
     found: set[str] = set()
     for each in body:
         if isinstance(each, ast.Assign) and name_of(each.value) not in MAKERS_FOR_CHECKERS:
@@ -96,7 +96,7 @@ def targets(body: list[ast.stmt]) -> set[str]:
 
 
 def imported(node: ast.ImportFrom) -> set[str]:
-    """Give the names that an import brings in from rclpy or a package of messages."""
+    """Return the names that an import brings in from rclpy or a package of messages."""
     root = (node.module or "").partition(".")[0]
     if not node.level and (root in DROPPED or root in sys.stdlib_module_names):
         return set()
@@ -104,7 +104,7 @@ def imported(node: ast.ImportFrom) -> set[str]:
 
 
 def described_module(path: Path) -> dict[str, object]:
-    """Give what a module has."""
+    """Return the members of a module."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     functions, _ = methods(tree.body)
     functions = {name: text for name, text in functions.items() if is_public(name)}

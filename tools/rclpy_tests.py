@@ -53,7 +53,7 @@ class Reason(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What became of a test function: PASSED, FAILED or NOT_APPLICABLE, and the error's first line."""
+    """Outcome of a test function: PASSED, FAILED or NOT_APPLICABLE, and the error's first line."""
 
     verdict: str
     error: str = ""
@@ -79,7 +79,7 @@ def read_reasons(path: Path = REASONS) -> dict[str, Reason]:
 
 
 def judged(outcomes: Outcomes, reasons: dict[str, Reason]) -> Outcomes:
-    """The same, where a test that does not apply is no failure."""
+    """The same, where a test that does not apply is not a failure."""
     return {
         test: Outcome(reasons[test].verdict, outcome.error)
         if test in reasons and outcome.verdict == FAILED
@@ -89,7 +89,7 @@ def judged(outcomes: Outcomes, reasons: dict[str, Reason]) -> Outcomes:
 
 
 def surprises(outcomes: Outcomes, reasons: dict[str, Reason]) -> Iterator[str]:
-    """What the reasons do not account for, a line each."""
+    """Return the failures without a reason, a line each."""
     for test, (verdict, error) in outcomes.items():
         if verdict == FAILED and test not in reasons:
             yield f"{test} failed: {error}"
@@ -129,10 +129,10 @@ def functions(path: Path) -> list[str]:
 
 def environment(transport: str, domain: int) -> dict[str, str]:
     """The environment of a file's process: nothing of the caller's that changes how nodes meet."""
-    kept = {name: text for name, text in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK_", "ZENOH_"))}
+    stored = {name: text for name, text in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK_", "ZENOH_"))}
     chosen = {"ROBOLINK_TRANSPORT": "memory"} if transport == "memory" else {"ROS_DOMAIN_ID": str(domain)}
-    path = os.pathsep.join(filter(None, (str(TYPES), str(ROOT), kept.get("PYTHONPATH"))))
-    return {**kept, **chosen, "PYTHONPATH": path, "ROBOLINK_COMPAT": "always", "PYTHONDONTWRITEBYTECODE": "1"}
+    path = os.pathsep.join(filter(None, (str(TYPES), str(ROOT), stored.get("PYTHONPATH"))))
+    return {**stored, **chosen, "PYTHONPATH": path, "ROBOLINK_COMPAT": "always", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 def run(path: Path, transport: str, limit: float) -> Outcomes:
@@ -163,7 +163,7 @@ def run(path: Path, transport: str, limit: float) -> Outcomes:
 
 
 def last_line(text: str) -> str:
-    """What pytest says was wrong, else the last line that says something."""
+    """Return the error that pytest prints, else the last line that says something."""
     lines = [line.strip() for line in text.splitlines() if line.strip()] or ["nothing was said"]
     return next((line[1:].strip() for line in reversed(lines) if line.startswith("E  ")), lines[-1])
 
@@ -182,7 +182,7 @@ def read_report(path: Path, file: str) -> Outcomes:
 
 
 def outcome_of(case: ElementTree.Element) -> Outcome:
-    """What became of one case."""
+    """Outcome of one case."""
     for element in case:
         if element.tag in ("failure", "error"):
             return Outcome(FAILED, next(iter(element.get("message", "").splitlines()), ""))
@@ -217,7 +217,7 @@ def run_again(
 
 
 def is_of(test: str, file: str) -> bool:
-    """Whether a test is in this file."""
+    """Return whether a test is in this file."""
     return test.partition("::")[0] == file
 
 
@@ -275,7 +275,7 @@ def write(path: Path, text: str) -> None:
 
 
 def arguments(given: Iterable[str] | None = None) -> argparse.Namespace:
-    """What is asked for."""
+    """Options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("checkout", type=Path, help="a checkout of ros2/rclpy; the figures are for 8.0.0")
     parser.add_argument("--file", action="append", help="only this file; may be given more than once")
@@ -295,16 +295,16 @@ def arguments(given: Iterable[str] | None = None) -> argparse.Namespace:
 
 def main(given: Iterable[str] | None = None) -> int:
     """Run, tell, and say whether all is as the reasons have it."""
-    asked, console, reasons = arguments(given), Console(), read_reasons()
+    options, console, reasons = arguments(given), Console(), read_reasons()
     with tempfile.TemporaryDirectory() as folder:
-        here = shutil.copytree(asked.tests, Path(folder, "test"), ignore=shutil.ignore_patterns("__init__.py"))
-        files = [each for each in sorted(here.glob("test_*.py")) if not asked.file or each.name in asked.file]
-        found = run_all(files, asked.transport, asked.limit, asked.jobs, console)
-        found = run_again(found, files, reasons, asked.transport, asked.limit, console)
+        here = shutil.copytree(options.tests, Path(folder, "test"), ignore=shutil.ignore_patterns("__init__.py"))
+        files = [each for each in sorted(here.glob("test_*.py")) if not options.file or each.name in options.file]
+        found = run_all(files, options.transport, options.limit, options.jobs, console)
+        found = run_again(found, files, reasons, options.transport, options.limit, console)
     outcomes = judged(found, reasons)
     show(outcomes, console)
-    if asked.markdown:
-        write(asked.markdown, markdown(outcomes, reasons))
+    if options.markdown:
+        write(options.markdown, markdown(outcomes, reasons))
     unexpected = list(surprises(found, reasons))
     for line in unexpected:
         console.print(line, style="red", markup=False, highlight=False, soft_wrap=True)

@@ -34,7 +34,7 @@ def main() -> None:
     """Take the picture that the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     if chromium is None:
         sys.exit("chromium is not installed: apt-get install chromium")
     with free_domain() as domain, started(domain) as address, Browser(1100, 620) as browser:
@@ -44,7 +44,7 @@ def main() -> None:
         browser.choose(".panel-services .picker", "/turtle1/set_pen")
         browser.move((500.0, 18.0))
         time.sleep(0.5)
-        browser.screenshot(asked.file)
+        browser.screenshot(options.file)
         if browser.problems:
             sys.exit(f"the page's console: {browser.problems[:3]}")
 

@@ -55,17 +55,17 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=1280)
     parser.add_argument("--height", type=int, default=720)
     parser.add_argument("--language", default="en", choices=["en", "pt"])
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     if chromium is None:
         sys.exit("chromium is not installed: apt-get install chromium")
-    with Browser(asked.width, asked.height) as browser, tempfile.TemporaryDirectory() as scratch:
-        if asked.exercise:
-            folder = begun(Path(scratch), asked.exercise, asked.language)
+    with Browser(requested.width, requested.height) as browser, tempfile.TemporaryDirectory() as scratch:
+        if requested.exercise:
+            folder = begun(Path(scratch), requested.exercise, requested.language)
             with started(folder, "learn", "view", "--no-browser", "--port", "0") as address:
-                take_exercise(browser, address, asked)
+                take_exercise(browser, address, requested)
         else:
-            with started(ROOT, "launch", asked.system, "--view") as address:
-                take(browser, address, asked)
+            with started(ROOT, "launch", requested.system, "--view") as address:
+                take(browser, address, requested)
         if browser.problems:
             sys.exit(f"the page's console: {browser.problems[:3]}")
 
@@ -99,30 +99,30 @@ def started(folder: Path, *words: str) -> Iterator[str]:
             process.communicate(timeout=20)
 
 
-def take_exercise(browser: Browser, address: str, asked: argparse.Namespace) -> None:
+def take_exercise(browser: Browser, address: str, requested: argparse.Namespace) -> None:
     """Open the page, let it play the path of the check to its end, and take a picture."""
-    remember(browser, asked, {})
+    remember(browser, requested, {})
     browser.open(address)
     film = "robolink.layout?.panel('learn')?.film"
     browser.wait(f"globalThis.robolink && {film}?.end && {film}.at == {film}.end && !{film}.changed")
-    browser.screenshot(asked.file)
+    browser.screenshot(requested.file)
 
 
-def take(browser: Browser, address: str, asked: argparse.Namespace) -> None:
+def take(browser: Browser, address: str, requested: argparse.Namespace) -> None:
     """Open the page as somebody left it, let the robot drive, and take a picture."""
-    remember(browser, asked, {"layout": LAYOUT})
+    remember(browser, requested, {"layout": LAYOUT})
     browser.open(address)
     browser.wait("globalThis.robolink?.layout?.isReady && robolink.topics.get('/cmd_vel')?.view")
     for branch in ("linear", "angular"):
         browser.click(f".tree [data-path={branch}]")
     browser.move((640.0, 18.0))
-    time.sleep(asked.seconds)
-    browser.screenshot(asked.file)
+    time.sleep(requested.seconds)
+    browser.screenshot(requested.file)
 
 
-def remember(browser: Browser, asked: argparse.Namespace, remembered: CELL) -> None:
+def remember(browser: Browser, requested: argparse.Namespace, remembered: CELL) -> None:
     """Fill the browser's memory before the page is opened."""
-    remembered["settings"] = {"theme": asked.theme, "language": asked.language}
+    remembered["settings"] = {"theme": requested.theme, "language": requested.language}
     source = "".join(
         f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))});"
         for name, value in remembered.items()

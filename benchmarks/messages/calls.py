@@ -13,7 +13,7 @@ KEY = "bench/call"
 REQUEST, RESPONSE, ATTACHMENT = bytes(5), bytes(13), bytes(33)
 """As long as a Trigger's are."""
 
-_kept: list[Any] = []
+_stored: list[Any] = []
 
 
 def pong(task: Task) -> None:
@@ -62,7 +62,7 @@ def asker_of_zenoh() -> Any:
 
     from benchmarks.messages.bare import opened, wait_for_match
 
-    _kept.append(session := opened())
+    _stored.append(session := opened())
     querier = session.declare_querier(
         KEY, target=zenoh.QueryTarget.ALL_COMPLETE, consolidation=zenoh.ConsolidationMode.NONE
     )

@@ -79,9 +79,9 @@ class Peer:
         number = int(os.environ["ROS_DOMAIN_ID"])
         self._domain = domain.Domain(number, f"<CycloneDDS><Domain>{HERE}</Domain></CycloneDDS>")
         self._participant = domain.DomainParticipant(number)
-        kept = core.Policy.History.KeepLast(10) if task.large else core.Policy.History.KeepAll
-        self._qos = core.Qos(core.Policy.Reliability.Reliable(util.duration(seconds=1)), kept)
-        self._kept: list[object] = []
+        stored = core.Policy.History.KeepLast(10) if task.large else core.Policy.History.KeepAll
+        self._qos = core.Qos(core.Policy.Reliability.Reliable(util.duration(seconds=1)), stored)
+        self._stored: list[object] = []
 
     def writer(self, name: str) -> Any:
         return pub.DataWriter(self._participant, topic.Topic(self._participant, name, self._type), qos=self._qos)
@@ -95,7 +95,7 @@ class Peer:
 
         listener = core.Listener(on_data_available=on_data_available)
         of = topic.Topic(self._participant, name, self._type)
-        self._kept.append(sub.DataReader(self._participant, of, qos=self._qos, listener=listener))
+        self._stored.append(sub.DataReader(self._participant, of, qos=self._qos, listener=listener))
 
 
 def pong(task: Task) -> None:

@@ -18,7 +18,7 @@ from robolink.context import Context
 from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from robolink.qos import HistoryPolicy, QoSProfile
 
-KEPT = 10
+STORED = 10
 """Depth of the queues of large messages, as a camera's would be; of small ones all are kept."""
 
 
@@ -83,7 +83,7 @@ def look(image: Any) -> int:
 
 
 def flood_qos(task: Task) -> QoSProfile:
-    return QoSProfile(depth=KEPT) if task.large else QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL)
+    return QoSProfile(depth=STORED) if task.large else QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL)
 
 
 def sink(task: Task) -> None:

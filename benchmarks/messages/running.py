@@ -133,7 +133,7 @@ def expect_ready(started: subprocess.Popen[str]) -> None:
 
 
 def answer(started: subprocess.Popen[str]) -> Any:
-    """Return what a process says next."""
+    """Return the next line of a process."""
     assert started.stdout
     line = started.stdout.readline()
     if not line:

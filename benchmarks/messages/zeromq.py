@@ -17,14 +17,14 @@ from benchmarks.messages.plain import plain
 
 zmq: Any = importlib.import_module("zmq")
 
-KEPT = 10
+STORED = 10
 """Large messages that wait at either end before the sender has to; of small ones there are 10,000."""
 
 
 def paired(task: Task, first: bool) -> Any:
     """A socket, connected to that of the other process."""
     socket = zmq.Context().socket(zmq.PAIR)
-    socket.set_hwm(KEPT if task.large else 10_000)
+    socket.set_hwm(STORED if task.large else 10_000)
     domain = os.environ["ROS_DOMAIN_ID"]
     path = Path(tempfile.gettempdir(), f"robolink-benchmark-{domain}")
     address = f"tcp://127.0.0.1:{30_000 + int(domain)}" if sys.platform == "win32" else f"ipc://{path}"

@@ -129,7 +129,7 @@ def test_waypoints_can_be_changed_on_the_way_but_not_to_nonsense(system: System)
     assert node.set_parameters([Parameter("waypoints", value="5,5")])[0].successful
     system.run(1.0)
     assert {place[:2] for place in server.places} == {(0, 0), (5, 5)}
-    with pytest.raises(InvalidParameterValueException, match="are no such threes"):
+    with pytest.raises(InvalidParameterValueException, match="are not such threes"):
         system.start(patrol.Patrol, parameters={"waypoints": [1.0, 2.0]})
 
 

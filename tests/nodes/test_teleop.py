@@ -44,12 +44,12 @@ VELOCITIES = {"w": (0.3, 0), "down": (-0.3, 0), "j": (0, 1), "right": (0, -1), "
 
 @pytest.mark.parametrize(("key", "expected"), VELOCITIES.items())
 def test_a_key_asks_for_a_velocity(key: str, expected: tuple[float, float]) -> None:
-    twist = teleop.wanted(key, teleop.Speeds())
+    twist = teleop.twist_of(key, teleop.Speeds())
     assert (twist.linear.x, twist.angular.z) == expected
 
 
 def test_other_keys_ask_for_nothing_and_q_and_z_change_the_speeds() -> None:
-    assert [teleop.wanted(key, teleop.Speeds()) for key in ("", "1", "q", "\x1b")] == [None] * 4
+    assert [teleop.twist_of(key, teleop.Speeds()) for key in ("", "1", "q", "\x1b")] == [None] * 4
     faster = teleop.changed(teleop.Speeds(0.2, 1.0), "q")
     assert faster == pytest.approx((0.22, 1.1))
     assert teleop.changed(faster, "z") == pytest.approx((0.2, 1.0))
@@ -73,7 +73,7 @@ SIDEWAYS = {
 @pytest.mark.parametrize(("key", "expected"), SIDEWAYS.items())
 def test_with_shift_a_key_asks_for_a_way_to_the_side(key: str, expected: tuple[float, float]) -> None:
     (read,) = teleop.keys(key)
-    assert teleop.wanted(read, teleop.Speeds()) == Twist(linear=Vector3(x=expected[0], y=expected[1]))
+    assert teleop.twist_of(read, teleop.Speeds()) == Twist(linear=Vector3(x=expected[0], y=expected[1]))
 
 
 # The node

@@ -58,8 +58,8 @@ def test_steps_by_a_velocity_are_as_long_as_legs_make_them() -> None:
 
 def test_what_a_walk_remembers_has_an_end() -> None:
     walk = walker.Walk()
-    walk.walk_straight(walker.KEPT + 5)
-    assert (walk.steps, len(walk.history)) == (walker.KEPT + 5, walker.KEPT)
+    walk.walk_straight(walker.STORED + 5)
+    assert (walk.steps, len(walk.history)) == (walker.STORED + 5, walker.STORED)
 
 
 # Routes

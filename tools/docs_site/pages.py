@@ -41,7 +41,7 @@ class Page:
 
 @functools.cache  # each test of a page reads it
 def listing() -> dict[str, Any]:
-    """Return what docs/site.yaml says."""
+    """Return the content of docs/site.yaml."""
     read: dict[str, Any] = yaml.safe_load(LIST.read_text(encoding="utf-8"))
     return read
 

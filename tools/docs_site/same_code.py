@@ -25,11 +25,11 @@ def with_code_of(english: str, other: str, name: str) -> str:
     Raises:
         ValueError: If the number of blocks differs.
     """
-    wanted = raw_blocks(english)
-    if len(wanted) != len(blocks(other)):
-        raise ValueError(f"{name}: {len(wanted)} blocks in English, {len(blocks(other))} in Portuguese")
+    expected = raw_blocks(english)
+    if len(expected) != len(blocks(other)):
+        raise ValueError(f"{name}: {len(expected)} blocks in English, {len(blocks(other))} in Portuguese")
     made: list[str] = []
-    waiting = iter(wanted)
+    waiting = iter(expected)
     for line, place in parts(other):
         if place == "opens":
             made += next(waiting)
