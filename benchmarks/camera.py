@@ -39,12 +39,16 @@ from robolink.interfaces.std_msgs.msg import Header  # noqa: E402
 from robolink.parameter import Parameter  # noqa: E402
 from robolink.sim import Shot, WorldDescription, load_world  # noqa: E402
 from robolink.sim.description import Wall  # noqa: E402
+from robolink.sim.rendering.canvas import write_depths  # noqa: E402
 from robolink.sim.rendering.pinhole import Pinhole, View, view_from  # noqa: E402
-from robolink.sim.rendering.pixels import write_depths  # noqa: E402
-from robolink.sim.rendering.renderer import Backdrop, Renderer, Setting  # noqa: E402
-from robolink.sim.rendering.shooting import Shooter  # noqa: E402
+from robolink.sim.rendering.renderer import (  # noqa: E402
+    Backdrop,
+    Renderer,
+    Setting,
+    Shooter,
+)
 from robolink.sim.scene.scenery import scenery  # noqa: E402
-from robolink.sim.scene.surfaces import Cylinder, Surfaces  # noqa: E402
+from robolink.sim.scene.solids import Cylinder, Surfaces  # noqa: E402
 from robolink.sim.sensors import Camera  # noqa: E402
 from robolink.task import Future  # noqa: E402
 from robolink.workspace import find_node, load_node  # noqa: E402

@@ -24,7 +24,7 @@ from benchmarks.peers import Array  # noqa: E402 - found only now
 from robolink.sim import Pose, World, WorldDescription  # noqa: E402
 from robolink.sim.description import Drive, RobotDescription, Wall  # noqa: E402
 from robolink.sim.sensing.lidar import Beams, distances  # noqa: E402
-from robolink.sim.sensing.surroundings import standing  # noqa: E402
+from robolink.sim.sensing.scene import standing  # noqa: E402
 from robolink.sim.sensors import Lidar  # noqa: E402
 from tests.support import closed_loops as loops  # noqa: E402
 

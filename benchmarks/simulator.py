@@ -33,9 +33,8 @@ from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.sim import Pose, World, WorldDescription
-from robolink.sim.sensing.fixed import fixed_circles, fixed_segments
 from robolink.sim.sensing.lidar import Beams, distances, distances_batch
-from robolink.sim.sensing.surroundings import standing
+from robolink.sim.sensing.scene import fixed_circles, fixed_segments, standing
 from robolink.sim.sensors import Lidar
 from robolink.task import Future
 from robolink.world_node import Runner, Simulation

@@ -14,7 +14,7 @@ from msgspec import structs
 
 from robolink.image.codecs import png_of
 from robolink.sim import Pose, World, load_world
-from robolink.sim.rendering.shooting import Shot
+from robolink.sim.rendering.renderer import Shot
 from robolink.sim.sensors import Camera
 from robolink.workspace import find_world
 

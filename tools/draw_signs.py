@@ -14,9 +14,9 @@ import numpy as np
 from robolink.image.codecs import png_of
 from robolink.sim.colours import Colour, colour_of
 from robolink.sim.physics.convex import convex_parts
-from robolink.sim.scene.raster import Layer
+from robolink.sim.scene.floor import Layer
+from robolink.sim.scene.solids import Picture
 from robolink.sim.scene.strokes import Stroke
-from robolink.sim.scene.surfaces import Picture
 
 FOLDER = Path(__file__).resolve().parent.parent / "configs" / "worlds" / "signs"
 

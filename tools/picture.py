@@ -16,7 +16,7 @@ from robolink.interfaces.nav_msgs.msg import Odometry
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.parameter import Parameter
 from robolink.sim import load_world
-from robolink.sim.sensing.fixed import fixed_circles, fixed_segments
+from robolink.sim.sensing.scene import fixed_circles, fixed_segments
 from robolink.workspace import find_node, find_world, load_node
 
 SCALE, MARGIN = 70.0, 24.0

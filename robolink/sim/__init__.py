@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from robolink.sim.physics.placing import WorldError
     from robolink.sim.quantities import Pose
     from robolink.sim.readings import Inertia, Scan, Velocity, WheelState
-    from robolink.sim.rendering.shooting import Shot
+    from robolink.sim.rendering.renderer import Shot
     from robolink.sim.robot import Robot
     from robolink.sim.schedule import Reading
     from robolink.sim.world import World
@@ -44,7 +44,7 @@ _HOMES = {
     "Robot": "robot",
     "RobotDescription": "description",
     "Scan": "readings",
-    "Shot": "rendering.shooting",
+    "Shot": "rendering.renderer",
     "Velocity": "readings",
     "WheelState": "readings",
     "World": "world",

@@ -19,8 +19,7 @@ from robolink.sim.physics.contacts import Contacts, Touches
 from robolink.sim.physics.placing import WorldError, check_place, check_pose
 from robolink.sim.quantities import Pose
 from robolink.sim.readings import Scan, Velocity, WheelState
-from robolink.sim.sensing.devices import Carrier, LidarSensor, device
-from robolink.sim.sensing.random_streams import stream
+from robolink.sim.sensing.devices import Carrier, LidarSensor, device, stream
 from robolink.sim.sensing.scene import Scene
 
 

@@ -18,9 +18,9 @@ import pymunk
 
 from robolink.exceptions import NotFoundError
 from robolink.geometry import plane
-from robolink.sim.checks.pictures import robot_picture_problems
-from robolink.sim.checks.problem import Problem
+from robolink.sim.checks.appearance import robot_picture_problems
 from robolink.sim.checks.robots import robot_problems
+from robolink.sim.checks.shapes import Problem
 from robolink.sim.checks.worlds import mass_problems
 from robolink.sim.description import Obstacle, RobotDescription, WorldDescription
 from robolink.sim.driving.fleet import Fleet
@@ -30,8 +30,7 @@ from robolink.sim.physics.mover import Mover
 from robolink.sim.physics.placing import WorldError, check_pose
 from robolink.sim.robot import Robot, WorldParts
 from robolink.sim.schedule import Reading, Schedule
-from robolink.sim.sensing.fixed import nearest_wall_distance
-from robolink.sim.sensing.scene import Scene
+from robolink.sim.sensing.scene import Scene, nearest_wall_distance
 from robolink.system.terminal import shown
 
 _ITERATIONS = 20

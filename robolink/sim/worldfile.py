@@ -18,7 +18,7 @@ from robolink.documents.mistakes import MOST_TOLD, first_mistakes
 from robolink.documents.yamlfile import Document
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.extensions.optional import part
-from robolink.sim.checks.pictures import picture_problems, with_paths
+from robolink.sim.checks.appearance import picture_problems, with_paths
 from robolink.sim.checks.worlds import mass_problems, misfits, problems
 from robolink.sim.description import WorldDescription
 from robolink.sim.sensors import SENSORS, Sensor

@@ -13,7 +13,7 @@ from robolink.documents import yamlfile
 from robolink.exceptions import NotFoundError
 from robolink.geometry.plane import wrapped
 from robolink.sim import Pose, RobotDescription, WorldDescription, WorldError
-from robolink.sim.checks.pictures import robot_picture_problems
+from robolink.sim.checks.appearance import robot_picture_problems
 from robolink.sim.checks.robots import robot_misfits, robot_problems
 from robolink.sim.physics.placing import check_pose
 from robolink.sim.worldfile import sensor_class

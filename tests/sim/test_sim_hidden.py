@@ -11,8 +11,7 @@ from robolink.sim.arrays import Array, Indices
 from robolink.sim.quantities import Pose
 from robolink.sim.sensing import lidar as module
 from robolink.sim.sensing.lidar import Beams, distances, returns_batch
-from robolink.sim.sensing.surroundings import FIXED, Circles, Surroundings, circles_of
-from robolink.sim.sensing.tiles import Tiles
+from robolink.sim.sensing.scene import FIXED, Circles, Surroundings, Tiles, circles_of
 from robolink.sim.sensors import Lidar
 
 LIDARS = [

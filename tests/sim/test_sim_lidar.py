@@ -14,11 +14,19 @@ from hypothesis import strategies as st
 from robolink.sim.arrays import Array, Indices
 from robolink.sim.description import Shape, WorldDescription
 from robolink.sim.quantities import Pose
-from robolink.sim.sensing.fixed import edges
 from robolink.sim.sensing.lidar import Beams, distances, distances_batch, limited, returns_batch
-from robolink.sim.sensing.scene import Scene
-from robolink.sim.sensing.surroundings import FIXED, NOBODY, Edges, Surroundings, circles_of, standing
-from robolink.sim.sensing.tiles import Tiles, columns
+from robolink.sim.sensing.scene import (
+    FIXED,
+    NOBODY,
+    Edges,
+    Scene,
+    Surroundings,
+    Tiles,
+    circles_of,
+    columns,
+    edges,
+    standing,
+)
 from robolink.sim.sensors import Lidar
 from robolink.sim.trigonometry import cos_and_sin
 
@@ -299,7 +307,7 @@ def city(random: np.random.Generator, count: int) -> Array:
 
 @pytest.mark.parametrize("kept", [10**6, 100])
 def test_a_large_map_is_seen_exactly(kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.sim.sensing.tiles._KEPT", kept)
+    monkeypatch.setattr("robolink.sim.sensing.scene._KEPT", kept)
     random = np.random.default_rng(10)
     segments, beams = city(random, 2000), Beams(Lidar("scan", beams=60, range=(0.1, 60.0)))
     around, poses = standing(segments, NO_CIRCLES), random.uniform(-500, 500, (20, 3))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from robolink.sim.checks.outlines import has_area, in_line, meeting, repeated
+from robolink.sim.checks.shapes import has_area, in_line, meeting, repeated
 from robolink.sim.description import signed_area
 from robolink.sim.physics.convex import convex_parts
 from robolink.sim.quantities import Point

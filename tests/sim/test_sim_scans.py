@@ -9,7 +9,7 @@ import pytest
 
 from robolink.sim import World, load_world
 from robolink.sim.sensing.lidar import Beams, distances
-from robolink.sim.sensing.surroundings import standing
+from robolink.sim.sensing.scene import standing
 from robolink.sim.sensors import Lidar
 
 NO_CIRCLES = np.zeros((0, 3))

@@ -15,9 +15,8 @@ from robolink.exceptions import NotFoundError
 from robolink.geometry.plane import wrapped
 from robolink.sim import Inertia, Pose, Robot, Scan, World, load_world
 from robolink.sim.driving.arithmetic import sinc
-from robolink.sim.sensing.lidar import Beams, distances
-from robolink.sim.sensing.range_finder import nearest_in_cone
-from robolink.sim.sensing.surroundings import standing
+from robolink.sim.sensing.lidar import Beams, distances, nearest_in_cone
+from robolink.sim.sensing.scene import standing
 from robolink.sim.sensors import Lidar
 
 SHARP = "a_max: 500, alpha_max: 1000"

@@ -9,7 +9,7 @@ import pytest
 from robolink.exceptions import NotFoundError
 from robolink.sim import CommandError, Robot, Velocity, World, load_world
 from robolink.sim.description import Wheel
-from robolink.sim.driving.wheels import Wheels
+from robolink.sim.driving.drive import Wheels
 from robolink.sim.quantities import Pose
 
 PAIR = """

@@ -197,7 +197,7 @@ def test_pictures_that_will_not_do_are_named(folder: Path, line: str, expected: 
 
 
 def test_pictures_of_too_many_pixels_together_are_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.sim.checks.pictures.MOST_PIXELS", 10)
+    monkeypatch.setattr("robolink.sim.checks.appearance.MOST_PIXELS", 10)
     text = "signs: [{image: floor.png, pose: [1, 1], z: 1}, {image: stop.png, pose: [1, 1], z: 1}]"
     (error,) = check_world(write(folder, text)).errors
     assert "signs[1].image: all pictures together have over" in str(error)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from robolink.sim.scene.surfaces import Cylinder, Face, Surfaces
+from robolink.sim.scene.solids import Cylinder, Face, Surfaces
 
 Array = npt.NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from robolink.sim import load_world
+from robolink.sim.rendering.canvas import write_colours
 from robolink.sim.rendering.pinhole import Pinhole, View, view_from
-from robolink.sim.rendering.pixels import write_colours
 from robolink.sim.rendering.renderer import Backdrop, Renderer, Setting
 from robolink.sim.scene.scenery import scenery
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from robolink.sim import load_world
-from robolink.sim.sensing.fixed import fixed_circles, fixed_segments, nearest_wall_distance
+from robolink.sim.sensing.scene import fixed_circles, fixed_segments, nearest_wall_distance
 from robolink.workspace import find_world
 from tests.support.commands import TERMINAL, Command
 from tests.support.domains import free_domain

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pymunk
 
-from robolink.sim.checks.problem import Problem
+from robolink.sim.checks.shapes import Problem
 from robolink.sim.description import MapWalls, Obstacle, RobotDescription, WorldDescription
 from robolink.sim.physics.bodies import fixed_body, placed, solids, wall_shapes
 from robolink.sim.physics.placing import overlapped

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from robolink.sim.checks.appearance import colour_problems, null_colour, sign_problems
-from robolink.sim.checks.problem import Problem, repeated_names, under
-from robolink.sim.checks.shapes import shape_problems, speed_problems
+from robolink.sim.checks.shapes import Problem, repeated_names, shape_problems, speed_problems, under
 from robolink.sim.description import Drive, RobotDescription, Wheel, steps_between
 from robolink.sim.sensors import Encoders, Sensor
 from robolink.system.terminal import shown

@@ -13,9 +13,15 @@ from robolink.sim.checks.appearance import (
     sign_problems,
 )
 from robolink.sim.checks.overlaps import overlaps
-from robolink.sim.checks.problem import Problem, repeated_names, under
 from robolink.sim.checks.robots import robot_misfits, robot_problems
-from robolink.sim.checks.shapes import obstacle_misfits, obstacle_problems, wall_problems
+from robolink.sim.checks.shapes import (
+    Problem,
+    obstacle_misfits,
+    obstacle_problems,
+    repeated_names,
+    under,
+    wall_problems,
+)
 from robolink.sim.description import MapWalls, Obstacle, RobotDescription, WorldDescription
 from robolink.sim.quantities import Point
 from robolink.system.terminal import shown

@@ -11,7 +11,7 @@ import numpy as np
 from robolink.sim.maps import pgm, png
 from robolink.sim.maps.formats import LARGEST_FILE
 from robolink.sim.maps.image import ImageError
-from robolink.sim.scene.surfaces import Picture
+from robolink.sim.scene.solids import Picture
 from robolink.system.files import read_plain
 
 MOST_PIXELS = 8_000_000

@@ -19,8 +19,7 @@ from robolink.sim.quantities import Pose
 from robolink.sim.scene.floor import painted_floor
 from robolink.sim.scene.pictures import kept_picture
 from robolink.sim.scene.signs import sign_surfaces
-from robolink.sim.scene.solids import HERE, solid, upright
-from robolink.sim.scene.surfaces import Picture, Scenery, Surfaces
+from robolink.sim.scene.solids import HERE, Picture, Scenery, Surfaces, solid, upright
 
 SKY: Colour = (190, 205, 225)
 WALL: Colour = (200, 195, 185)

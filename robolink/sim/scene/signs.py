@@ -8,7 +8,7 @@ from math import cos, sin
 import numpy as np
 
 from robolink.sim.description import Sign
-from robolink.sim.scene.surfaces import Cylinder, Face, Picture, Surfaces
+from robolink.sim.scene.solids import Cylinder, Face, Picture, Surfaces
 from robolink.sim.scene.tags import plate_size, tag_of, tag_picture
 
 BACK = (120, 120, 125)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from robolink.exceptions import nearest
-from robolink.sim.scene.surfaces import Picture
+from robolink.sim.scene.solids import Picture
 from robolink.system.terminal import shown
 
 BORDER, MARGIN = 1, 1

@@ -1,7 +1,8 @@
-"""Sensors mounted on robots: each measures with its own random stream, so that no other changes its values."""
+"""Devices: what each kind of sensor measures, with a stream of random numbers of its own."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
@@ -11,18 +12,38 @@ import pymunk
 
 from robolink.geometry import plane
 from robolink.geometry.plane import placed_on, wrapped
+from robolink.sim.arrays import Array
 from robolink.sim.description import RobotDescription
 from robolink.sim.driving.motion import Motion
 from robolink.sim.physics.contacts import Sector
 from robolink.sim.quantities import Pose
 from robolink.sim.readings import Inertia, Scan, WheelState
 from robolink.sim.rendering.pinhole import view_from
-from robolink.sim.rendering.shooting import Shooter, Shot
-from robolink.sim.sensing.lidar import Beams, limited, measured
-from robolink.sim.sensing.random_streams import LidarNoise, stream
-from robolink.sim.sensing.range_finder import nearest_in_cone
+from robolink.sim.rendering.renderer import Shooter, Shot
+from robolink.sim.sensing.lidar import Beams, limited, measured, nearest_in_cone
 from robolink.sim.sensing.scene import Scene
 from robolink.sim.sensors import Bumper, Camera, Encoders, Imu, Lidar, RangeFinder, Sensor, kind_of
+
+
+def stream(seed: int, robot: str, sensor: str) -> np.random.Generator:
+    """Return the random stream of one sensor of one robot; the same on every machine and in every process."""
+    digest = hashlib.sha256(f"{seed}/{robot}/{sensor}".encode()).digest()
+    return np.random.Generator(np.random.PCG64(int.from_bytes(digest[:16], "little")))
+
+
+class LidarNoise:
+    """Gaussian noise and lost returns; each scan draws the same count of numbers, whatever the beams hit."""
+
+    def __init__(self, lidar: Lidar, random: np.random.Generator) -> None:
+        self._noise, self._dropout, self._random = lidar.noise, lidar.dropout, random
+
+    def disturbed(self, ranges: Array) -> Array:
+        """Return the ranges as this scanner reads them; a lost beam is inf."""
+        if self._noise:
+            ranges = ranges + self._noise * self._random.standard_normal(len(ranges))
+        if self._dropout:
+            ranges = np.where(self._random.random(len(ranges)) < self._dropout, np.inf, ranges)
+        return ranges
 
 
 class Carrier(NamedTuple):

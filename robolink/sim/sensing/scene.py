@@ -1,22 +1,262 @@
-"""Scene of a world as sensors see it: the fixed shapes, and the present places of the moving ones."""
+"""Scene that sensors look at: fixed and moving shapes by tiles, and what cameras see."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import pymunk
 
-from robolink.sim.arrays import Array, Place
-from robolink.sim.description import RobotDescription, Shape, WorldDescription
+from robolink.sim.arrays import Array, Indices, Place
+from robolink.sim.description import Obstacle, RobotDescription, Shape, WorldDescription
 from robolink.sim.physics.body_columns import BodyPlaces
-from robolink.sim.rendering.renderer import Setting
-from robolink.sim.sensing.fixed import fixed_circles, fixed_reflectances, fixed_segments
-from robolink.sim.sensing.sights import Sights
-from robolink.sim.sensing.surroundings import FIXED, Circles, Edges, Surroundings, circles_of
-from robolink.sim.sensing.tiles import Tiles, columns
+from robolink.sim.quantities import Pose
+from robolink.sim.rendering.renderer import Backdrop, Setting
+from robolink.sim.scene.scenery import robot_surfaces, scenery
+from robolink.sim.scene.solids import Scenery, Surfaces
+
+Corners: TypeAlias = Sequence[tuple[float, float]]
+
+
+def fixed_segments(description: WorldDescription) -> Array:
+    """Return walls and the edges of fixed boxes and polygons as rows x1, y1, x2, y2."""
+    rows = [[*start, *end] for wall in description.walls for start, end in wall.segments()]
+    parts = [np.array(rows, dtype=np.float64).reshape(-1, 4)]
+    for thing in _fixed(description):
+        if thing.circle is None:
+            parts.append(edges(thing.corners(), thing.start))
+    return np.concatenate(parts)
+
+
+def fixed_circles(description: WorldDescription) -> Array:
+    """Return the fixed circles as rows x, y, radius."""
+    rows = [[thing.start.x, thing.start.y, thing.circle] for thing in _fixed(description) if thing.circle is not None]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+
+def fixed_reflectances(description: WorldDescription) -> tuple[Array, Array]:
+    """Return the reflectances of the fixed segments and of the fixed circles, in their order."""
+    of_walls = [wall.reflectance for wall in description.walls for _ in wall.segments()]
+    fixed = _fixed(description)
+    of_edges = [thing.reflectance for thing in fixed for _ in thing.corners()]
+    of_circles = [thing.reflectance for thing in fixed if thing.circle is not None]
+    return np.array(of_walls + of_edges, dtype=np.float64), np.array(of_circles, dtype=np.float64)
+
+
+def edges(corners: Corners, pose: Pose) -> Array:
+    """Return the edges of a polygon at a pose as rows x1, y1, x2, y2."""
+    cos, sin = math.cos(pose.theta), math.sin(pose.theta)
+    local = np.asarray(corners, dtype=np.float64)
+    moved = np.column_stack(
+        (pose.x + cos * local[:, 0] - sin * local[:, 1], pose.y + sin * local[:, 0] + cos * local[:, 1])
+    )
+    return np.concatenate((moved, np.roll(moved, -1, axis=0)), axis=1)
+
+
+def nearest_wall_distance(segments: Array, circles: Array, x: float, y: float) -> float:
+    """Return the distance in metres from a point to the nearest segment or circle; inf in an empty world."""
+    to_segments = float(np.min(segment_distances(segments, x, y), initial=math.inf))
+    to_circles = np.hypot(circles[:, 0] - x, circles[:, 1] - y) - circles[:, 2]
+    return min(to_segments, float(np.min(to_circles, initial=math.inf)))
+
+
+def segment_distances(segments: Array, x: float, y: float) -> Array:
+    """Return the distance from a point to each segment, in metres."""
+    start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    to_point = np.array((x, y)) - start
+    square = np.maximum((along * along).sum(axis=1), 1e-300)  # a segment without length is a point
+    share = np.clip((to_point * along).sum(axis=1) / square, 0.0, 1.0)
+    gap = to_point - share[:, None] * along
+    distances: Array = np.hypot(gap[:, 0], gap[:, 1])
+    return distances
+
+
+def _fixed(description: WorldDescription) -> list[Obstacle]:
+    return [thing for thing in description.obstacles if thing.mass is None and thing.path is None]
+
+
+X, Y, NORMAL, REFLECTANCE = slice(0, 2), slice(2, 4), slice(4, 7), 7
+"""Rows of `columns`: x of both ends, y of both ends, the unit normal (x, y, and -x to turn it by), the reflectance."""
+
+_FEW = 64
+"""Number of segments up to which checking all is faster than choosing."""
+
+_TILES_ACROSS = 6
+"""Number of tiles in the length of the reach: more of them fit closer and are left sooner."""
+
+_KEPT = 1_000_000
+"""Most columns that are kept in all tiles together: 64 MB."""
+
+
+def columns(segments: Array, reflectances: Array) -> Array:
+    """Return segments (rows x1, y1, x2, y2) as columns with all that a scanner needs of each."""
+    x1, y1, x2, y2 = segments.T
+    dx, dy = x2 - x1, y2 - y1
+    length = np.sqrt(dx * dx + dy * dy)
+    point = length == 0.0  # as good as a short piece of a line that goes up
+    length[point], dy = 1.0, np.where(point, 1.0, dy)
+    return np.stack((x1, x2, y1, y2, dy / length, -dx / length, -dy / length, reflectances))
+
+
+class Tiles:
+    """Fixed segments with `reflectances`; those near a tile of the plane are searched once."""
+
+    def __init__(self, segments: Array, reflectances: Array) -> None:
+        self._segments, self._columns = segments, columns(segments, reflectances)
+        x1, y1, x2, y2 = segments.T
+        self._middle_x, self._middle_y = (x1 + x2) / 2, (y1 + y2) / 2
+        self._half = np.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2) / 2
+        self._near: dict[tuple[int, int, float], Array] = {}
+        self._count = 0
+
+    def near(self, x: float, y: float, reach: float) -> Array:
+        """Return the columns of all segments within `reach` metres of a place, in order, and some farther ones."""
+        if len(self._half) <= _FEW:
+            return self._columns
+        side = reach / _TILES_ACROSS
+        tile = (math.floor(x / side), math.floor(y / side), reach)
+        found = self._near.get(tile)
+        return self._remember(tile, side) if found is None else found
+
+    def _remember(self, tile: tuple[int, int, float], side: float) -> Array:
+        column, row, reach = tile
+        found = self._within((column + 0.5) * side, (row + 0.5) * side, reach + 0.75 * side)  # 0.71: to its corners
+        while self._near and self._count + found.shape[1] > _KEPT:
+            self._count -= self._near.pop(next(iter(self._near))).shape[1]
+        self._count += found.shape[1]
+        self._near[tile] = found
+        return found
+
+    def _within(self, x: float, y: float, reach: float) -> Array:
+        dx, dy, farthest = self._middle_x - x, self._middle_y - y, self._half + reach
+        perhaps = np.flatnonzero(dx * dx + dy * dy <= farthest * farthest)
+        which = perhaps[segment_distances(self._segments[perhaps], x, y) <= reach]
+        found: Array = self._columns.take(which, axis=1)
+        return found
+
+
+FIXED = -1
+"""Owner number of fixed shapes; moving ones are numbered from 0."""
+
+NOBODY = -2
+"""Owner number of a sensor that is mounted on nothing and sees everything."""
+
+
+class Circles(NamedTuple):
+    """Circles as arrays, one for each of their properties."""
+
+    x: Array
+    y: Array
+    radius: Array
+    reflectance: Array
+    owner: Indices
+
+    def taken(self, which: Indices) -> Circles:
+        """Return some of them."""
+        x, y, radius, reflectance = (each.take(which) for each in self[:4])
+        return Circles(x, y, radius, reflectance, self.owner.take(which))
+
+
+class Edges(NamedTuple):
+    """Segments that move, as `tiles.columns`, and the circle about the whole shape that each belongs to."""
+
+    columns: Array
+    x: Array
+    y: Array
+    radius: Array
+    owner: Indices
+
+
+class Surroundings(NamedTuple):
+    """All that can be seen. A sensor does not see the shape that it is mounted on, which it names by its number."""
+
+    walls: Tiles
+    circles: Circles
+    edges: Edges | None = None
+
+    def segments_near(self, x: float, y: float, reach: float, own: int) -> Array:
+        """Return the columns of the segments that a sensor at a place may see."""
+        walls = self.walls.near(x, y, reach)
+        if self.edges is None:
+            return walls
+        dx, dy, farthest = self.edges.x - x, self.edges.y - y, self.edges.radius + reach
+        seen = (dx * dx + dy * dy <= farthest * farthest) & (self.edges.owner != own)
+        return np.concatenate((walls, self.edges.columns.compress(seen, axis=1)), axis=1)
+
+    def has_circles_but(self, own: Sequence[int]) -> bool:
+        """True if there is any circle besides the only sensor's own."""
+        owner = self.circles.owner
+        return len(owner) > 1 or (len(owner) == 1 and (len(own) > 1 or own[0] != owner[0]))
+
+    def circles_near(self, places: Sequence[Place], reach: float, own: Sequence[int]) -> tuple[Indices, Indices]:
+        """Return all pairs (sensor, circle) of which the one may see the other; `own` is for each sensor."""
+        x, y = np.array(places)[:, :2].T
+        farthest = self.circles.radius + reach
+        near = np.flatnonzero(
+            (self.circles.x >= x.min() - farthest)
+            & (self.circles.x <= x.max() + farthest)
+            & (self.circles.y >= y.min() - farthest)
+            & (self.circles.y <= y.max() + farthest)
+        )
+        dx, dy = self.circles.x.take(near) - x[:, None], self.circles.y.take(near) - y[:, None]
+        farthest = farthest.take(near)
+        others = self.circles.owner.take(near) != np.array(own)[:, None]
+        sensors, found = np.nonzero((dx * dx + dy * dy <= farthest * farthest) & others)
+        return sensors, near.take(found)
+
+
+def circles_of(circles: Array, reflectance: Array, owner: Indices) -> Circles:
+    """Return circles (rows x, y, radius) as arrays, one for each of their properties."""
+    x, y, radius = np.ascontiguousarray(circles.T)
+    return Circles(x, y, radius, reflectance, owner)
+
+
+def standing(segments: Array, circles: Array) -> Surroundings:
+    """Return surroundings in which nothing moves: rows x1, y1, x2, y2, and rows x, y, radius."""
+    everything = circles_of(circles, np.ones(len(circles)), np.full(len(circles), FIXED, dtype=np.intp))
+    return Surroundings(Tiles(segments, np.ones(len(segments))), everything)
+
+
+class Sights:
+    """Surfaces of a world that cameras see.
+
+    Args:
+        description: The world.
+    """
+
+    def __init__(self, description: WorldDescription) -> None:
+        self._description = description
+        self._scenery: Scenery | None = None
+        self._backdrop: Backdrop | None = None
+        self._settings: dict[int, Setting] = {}
+
+    def forget(self) -> None:
+        """Forget what moves: something has come or gone."""
+        self._settings.clear()
+
+    def setting(self, viewer: int, things: Iterable[tuple[int, RobotDescription | int | None]]) -> Setting:
+        """Return what a viewer sees, made once.
+
+        Args:
+            viewer: Number of the viewer.
+            things: What moves, each with the row of its place: robots, obstacles by their places in the description, or
+                None for what is not seen.
+        """
+        if self._scenery is None or self._backdrop is None:
+            self._scenery = scenery(self._description)
+            self._backdrop = Backdrop(self._scenery)
+        if viewer not in self._settings:
+            movable = self._scenery.movable
+            self._settings[viewer] = Setting(
+                self._backdrop, [(row, _surfaces(each, movable)) for row, each in things if each is not None]
+            )
+        return self._settings[viewer]
+
+
+def _surfaces(thing: RobotDescription | int, movable: dict[int, Surfaces]) -> Surfaces:
+    return movable[thing] if isinstance(thing, int) else robot_surfaces(thing)
 
 
 class Scene:

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from robolink.image.conversion import convert
-from robolink.sim.rendering.arrays import packed
-from robolink.sim.rendering.noise import ImageNoise
-from robolink.sim.rendering.pixels import CHANNELS, channels, write_colours, write_depths
+from robolink.sim.rendering.canvas import CHANNELS, ImageNoise, channels, write_colours, write_depths
+from robolink.sim.rendering.pinhole import packed
 
 COLOURS = np.random.default_rng(1).integers(0, 256, (30, 40, 3), dtype=np.uint8)
 

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from robolink.sim.rendering import drawing
-from robolink.sim.rendering.canvas import Canvas
+from robolink.sim.rendering.canvas import Canvas, write_colours, write_depths
 from robolink.sim.rendering.pinhole import Pinhole, view_from
-from robolink.sim.rendering.pixels import write_colours, write_depths
 from robolink.sim.rendering.renderer import Backdrop, Renderer, Setting
-from robolink.sim.scene.surfaces import Cylinder, Face, Floor, Outline, Scenery, Surfaces
+from robolink.sim.scene.solids import Cylinder, Face, Floor, Outline, Scenery, Surfaces
 from tests.support.raycasting import Array, depths, rays
 
 SKY = (190, 205, 225)

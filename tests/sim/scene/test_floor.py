@@ -13,8 +13,8 @@ from robolink.sim.colours import colour_of
 from robolink.sim.description import FloorSettings, Paint
 from robolink.sim.quantities import Pose
 from robolink.sim.scene.floor import FLOOR, painted_floor
-from robolink.sim.scene.floor_size import too_much
-from robolink.sim.scene.surfaces import Floor
+from robolink.sim.scene.solids import Floor
+from robolink.sim.scene.strokes import too_much
 
 BLACK = FloorSettings(colour="black", resolution=0.01)
 

@@ -11,7 +11,7 @@ import pytest
 from robolink.sim.description import Obstacle, RobotDescription, Sign, Wall, WorldDescription
 from robolink.sim.quantities import Pose
 from robolink.sim.scene.scenery import robot_surfaces, scenery
-from robolink.sim.scene.surfaces import Face, Surfaces
+from robolink.sim.scene.solids import Face, Surfaces
 
 WALLS = (Wall(((4.0, 0.0), (4.0, 4.0)), height=0.6),)
 
