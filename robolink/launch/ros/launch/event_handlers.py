@@ -30,7 +30,22 @@ Target: TypeAlias = "Action | Callable[[Any], bool] | None"
 Reaction: TypeAlias = "SomeEntitiesType | Callable[..., SomeEntitiesType | None]"
 
 
-class OnActionEventBase(BaseEventHandler):
+class _Reacting(BaseEventHandler):
+    """Reaction by entities, or by a function of the event and the context that returns them."""
+
+    _reaction: Reaction
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return a description for people, and the entities that follow, as far as they are known."""
+        return type(self).__name__, [] if callable(self._reaction) else entities_in(self._reaction)
+
+    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
+        """Return the entities that follow `event` in `context`."""
+        super().handle(event, context)
+        return self._reaction(event, context) if callable(self._reaction) else self._reaction
+
+
+class OnActionEventBase(_Reacting):
     """Reaction to the events of one kind about an action.
 
     Args:
@@ -52,16 +67,6 @@ class OnActionEventBase(BaseEventHandler):
     ) -> None:
         self._target, self._kind, self._reaction = action_matcher, target_event_cls, on_event
         super().__init__(matcher=self._is_meant, handle_once=handle_once)
-
-    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description for people, and the entities that follow, as far as they are known."""
-        known = [] if callable(self._reaction) else entities_in(self._reaction)
-        return type(self).__name__, known
-
-    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
-        """Return the entities that follow `event` in `context`."""
-        super().handle(event, context)
-        return self._reaction(event, context) if callable(self._reaction) else self._reaction
 
     def _is_meant(self, event: Event) -> bool:
         if not isinstance(event, self._kind):
@@ -141,7 +146,7 @@ class OnProcessIO(OnActionEventBase):
         return None if reaction is None else reaction(event)
 
 
-class OnShutdown(BaseEventHandler):
+class OnShutdown(_Reacting):
     """Reaction to the end of the launch, before its processes end.
 
     Args:
@@ -152,12 +157,3 @@ class OnShutdown(BaseEventHandler):
     def __init__(self, *, on_shutdown: Reaction, handle_once: bool = False) -> None:
         self._reaction = on_shutdown
         super().__init__(matcher=lambda event: isinstance(event, Shutdown), handle_once=handle_once)
-
-    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
-        """Return a description for people, and the entities that follow, as far as they are known."""
-        return type(self).__name__, [] if callable(self._reaction) else entities_in(self._reaction)
-
-    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
-        """Return the entities that follow `event` in `context`."""
-        super().handle(event, context)
-        return self._reaction(event, context) if callable(self._reaction) else self._reaction
