@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -32,13 +33,15 @@ def is_in(name: str, modules: list[str]) -> bool:
 
 def lines_that_name(modules: list[str], files: list[Path]) -> list[str]:
     found = []
+    names = "|".join(re.escape(each.rpartition(".")[2]) for each in modules)
+    hint = re.compile(rf"\.(?:{names})\b|import .*\b(?:{names})\b|^\s+(?:{names}),$", re.MULTILINE)
     for file in files:
         own = ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
         if str(file.relative_to(ROOT)) in REGISTRIES or is_in(own, modules):
             continue
         package = own if file.name == "__init__.py" else own.rpartition(".")[0]
         text = file.read_text(encoding="utf-8")
-        if any(each.rpartition(".")[2] in text for each in modules):  # most files need not be parsed
+        if hint.search(text):  # most files need not be parsed
             found += [
                 f"{file.relative_to(ROOT)}:{line}: {name}"
                 for line, name in imported(ast.parse(text), package)
@@ -50,6 +53,11 @@ def lines_that_name(modules: list[str], files: list[Path]) -> list[str]:
 @pytest.mark.parametrize("annex", ANNEXES)
 def test_no_other_room_imports_an_annex(annex: str) -> None:
     assert lines_that_name(modules_of(annex), CODE) == []
+
+
+def test_a_file_that_imports_a_room_is_found() -> None:
+    assert lines_that_name(["robolink.tf2"], [*ROOT.glob("robolink/cli/tf/*.py")])
+    assert lines_that_name(["robolink.workspace"], [ROOT / "robolink/cli/pkg.py"])
 
 
 def test_late_and_relative_imports_and_names_in_texts_are_found() -> None:
