@@ -86,7 +86,7 @@ class Arguments:
 def parse_arguments(args: Sequence[str]) -> Arguments:
     """Parse a command line, its parameter files included.
 
-    Raises `InvalidROSArgsError`, `UnknownROSArgsError`, or `UnicodeEncodeError` for an argument that is no
+    Raises `InvalidROSArgsError`, `UnknownROSArgsError`, or `UnicodeEncodeError` for an argument that is not
     UTF-8 (all of them `ValueError`s).
     """
     for arg in args:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.output import complain
 from robolink.cli.shared.process import OTHER_NAMES, not_lost
-from robolink.documents.foreign import told_in_a_line
+from robolink.documents.foreign import in_a_line
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.system import exit_code
 
@@ -62,7 +62,7 @@ def _main(given: list[str], *, ends_here: bool) -> int:
             _end(code)
         return code
     try:
-        with told_in_a_line():
+        with in_a_line():
             code = _outcome(given)
         if ends_here and _has_open_looks():
             _end(code)

@@ -52,7 +52,7 @@ def warn_of_unknown_keys(
 
 
 @contextlib.contextmanager
-def told_in_a_line() -> Iterator[None]:
+def in_a_line() -> Iterator[None]:
     """Show each `FileWarning` on standard error in one line, as commands do, without the place in Python's code."""
     with warnings.catch_warnings():
         before = warnings.showwarning

@@ -74,7 +74,7 @@ class Reader:
         return DocumentError(shown(f"{spelled}: {message}" if spelled else message, 300), self._name, *place)
 
     def written(self, steps: Sequence[Step]) -> str | None:
-        """Return the text of the scalar at these steps as it is written; None if it is no scalar."""
+        """Return the text of the scalar at these steps as it is written; None if it is not a scalar."""
         import yaml
 
         node = self._root
@@ -330,7 +330,7 @@ def _worded(text: str, node: yaml.Node | None, data: Data) -> str:
     return re.sub(r", got .*", "", text) + f", got {found}" if text.startswith("expected") else text
 
 
-MOST_TOLD, MOST_MISTAKES = 20, 100
+MOST_REPORTED, MOST_MISTAKES = 20, 100
 """Most mistakes of a file that are reported, and that are looked for."""
 
 
@@ -340,7 +340,7 @@ def first_mistakes(errors: Iterable[DocumentError], looked_for: int | None = Non
     No more than `looked_for` are counted, where finding each takes time.
     """
     found = list(itertools.islice(errors, looked_for))
-    if len(found) <= MOST_TOLD + 1:
+    if len(found) <= MOST_REPORTED + 1:
         return found
-    more = f"{len(found) - MOST_TOLD:,}" if looked_for is None or len(found) < looked_for else "many"
-    return [*found[:MOST_TOLD], DocumentError(f"and {more} more mistakes", found[MOST_TOLD].file)]
+    more = f"{len(found) - MOST_REPORTED:,}" if looked_for is None or len(found) < looked_for else "many"
+    return [*found[:MOST_REPORTED], DocumentError(f"and {more} more mistakes", found[MOST_REPORTED].file)]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from robolink.documents import yamlfile
-from robolink.documents.mistakes import MOST_TOLD, first_mistakes
+from robolink.documents.mistakes import MOST_REPORTED, first_mistakes
 from robolink.documents.yamlfile import Document
 from robolink.exceptions import DocumentError, RobolinkError, nearest
 from robolink.extensions.optional import part
@@ -82,7 +82,9 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
         description = _with_map(document, grid)
     except DocumentError as error:
         errors.append(error)
-    errors += first_mistakes(_mistakes(document, description, grid), MOST_TOLD + 2)  # finding what overlaps takes time
+    errors += first_mistakes(
+        _mistakes(document, description, grid), MOST_REPORTED + 2
+    )  # finding what overlaps takes time
     return Checked(None if errors else with_paths(description, Path(path).parent), errors)
 
 

@@ -79,7 +79,7 @@ class SimulatedRecording:
                 self._error = error
 
     def write(self) -> None:
-        """Write what was published since the last call. Raises OSError and McapError (a ValueError)."""
+        """Write the messages that were published since the last call. Raises OSError and McapError (a ValueError)."""
         waiting, self._waiting, self._size = self._waiting, [], 0
         if self._error is not None:
             raise self._error

@@ -17,11 +17,11 @@ type_homes: Callable[[str], list[str]] = lambda name: []  # noqa: E731 - replace
 """Function that returns the modules with a message, service or action of this name, as ROS 2 calls them."""
 
 _MODULES = {"Node": ("robolink", "rclpy.node"), "rclpy": ("", ""), "robolink": ("", "")}
-"""Modules of names that are no types: in a program with robolink's names, and in one with rclpy's; '' imports it."""
+"""Modules of names that are not types: in a program with robolink's names, and in one with rclpy's; '' imports it."""
 
 
 def advice(error: BaseException) -> str:
-    """Return what to do about an exception, without a capital letter and a full stop; '' for what is no usual mistake.
+    """Return what to do about an exception, without a capital letter and a full stop; '' for an unusual mistake.
 
     Args:
         error: The exception, with its traceback.

@@ -14,7 +14,7 @@ from typing import ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 
-KEPT = 2
+MINOR_VERSIONS = 2
 """Minor versions for which a deprecated function goes on working."""
 
 
@@ -48,4 +48,4 @@ def deprecated(since: str, instead: str) -> Callable[[Callable[P, R]], Callable[
 def end_of(since: str) -> str:
     """Return the first version without what is deprecated since a version: two minor versions later."""
     major, minor = (int(each) for each in since.split(".")[:2])
-    return f"{major}.{minor + KEPT}"
+    return f"{major}.{minor + MINOR_VERSIONS}"

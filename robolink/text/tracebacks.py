@@ -49,7 +49,7 @@ def advised(text: str, error: BaseException) -> str:
 
 _SUGGESTED = re.compile(r"\. Did you (mean|forget)[^?]*\?$")
 _PRIVATE = re.compile(r"attribute '[^_]\w*'\. Did you mean: '_")
-"""A suggestion of Python's that names what is no business of a program: `_timers` for `on_timer`."""
+"""A suggestion of Python's that names something inside robolink: `_timers` for `on_timer`."""
 
 
 def _leave_out_search(trace: TracebackType | None) -> None:

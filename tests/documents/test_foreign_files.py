@@ -15,7 +15,7 @@ from robolink.bag.output_options import chunk_compression, read_outputs
 from robolink.bag.qos import read_qos_overrides
 from robolink.bag.topic import read_static_topics
 from robolink.counterparts.urdf import read_urdf
-from robolink.documents.foreign import FileWarning, told_in_a_line, warnings_to
+from robolink.documents.foreign import FileWarning, in_a_line, warnings_to
 from robolink.exceptions import DocumentError
 from robolink.impl.log_output import Record
 from robolink.security import policy
@@ -153,7 +153,7 @@ def test_a_parameter_that_no_node_declares_is_told(log_lines: list[Record], tmp_
 
 
 def test_commands_tell_each_warning_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    with told_in_a_line():
+    with in_a_line():
         warnings.warn("m.yaml:1:1: odd", FileWarning, stacklevel=1)
         with warnings_to(lambda _: None):
             warnings.warn("taken elsewhere", FileWarning, stacklevel=1)

@@ -25,7 +25,7 @@ from pathlib import Path
 import psutil
 
 from robolink.networks.asked import FIRST_PORT
-from robolink.supervisor.reporting.logs import KEPT_RUNS
+from robolink.supervisor.reporting.logs import MOST_RUNS
 from robolink.transport.port_sharing import free_domain, is_free
 
 NODES = 5
@@ -179,7 +179,7 @@ class Soak:
         word = [each for each in self.words() if each.name.startswith(f"launch-{launcher.pid}-")]
         assert launcher.returncode == -9 or not word, f"a word of the launcher is left: {word}"
         runs = [each for each in (self.folder / "logs").iterdir() if not each.is_symlink()]
-        assert launcher.returncode < 0 or len(runs) <= KEPT_RUNS, f"logs of {len(runs)} runs"
+        assert launcher.returncode < 0 or len(runs) <= MOST_RUNS, f"logs of {len(runs)} runs"
         # What a session leaves there the next one sweeps; what others on this machine have just made is mapped soon.
         most = self._shared_memory + 4 * NODES
         self._wait(lambda: len(forgotten_memory()) <= most, "shared memory is left")

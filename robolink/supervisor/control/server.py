@@ -193,7 +193,7 @@ class Control:
 
 
 def _as_text(name: str) -> str:
-    """Return a file's name with a question mark for each byte that is no valid UTF-8: JSON has no other text."""
+    """Return a file's name with a question mark for each byte that is not valid UTF-8: JSON has no other text."""
     return name.encode(errors="replace").decode()
 
 

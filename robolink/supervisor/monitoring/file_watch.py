@@ -28,7 +28,7 @@ class Changes:
         self._seen: dict[Path, Stamp] = {}
 
     def follow(self, paths: Iterable[Path]) -> None:
-        """Add files; their present content is no change."""
+        """Add files; their present content does not count as a change."""
         for path in paths:
             if path not in self._known:
                 self._known[path] = self._seen[path] = self._stamp(path)
@@ -181,7 +181,7 @@ def parse(path: Path) -> ast.Module:
     text = path.read_bytes()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # an odd escape is no news here
+            warnings.simplefilter("ignore")  # an odd escape does not matter here
             tree = ast.parse(text, str(path))
             compile(tree, str(path), "exec", dont_inherit=True)  # finds a `return` outside of functions, too
     except (ValueError, RecursionError, MemoryError) as error:

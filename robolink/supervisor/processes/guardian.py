@@ -173,7 +173,7 @@ def signal_group(group: int, number: int) -> bool:
 
 
 def is_alive(group: int) -> bool:
-    """True if a process group has a process that is no zombie (nobody may ever collect those)."""
+    """True if a process group has a process that is not a zombie (nobody may ever collect those)."""
     if not signal_group(group, 0):
         return False
     stats = [_stat(each) for each in Path("/proc").glob("[0-9]*/stat")]

@@ -22,7 +22,7 @@ from typing import BinaryIO
 
 from robolink.system import clocks
 
-KEPT_RUNS = 30
+MOST_RUNS = 30
 LARGEST = 50_000_000
 """Size in bytes at which a file is rotated to NAME.log.old: a process has twice as much at most."""
 OWN_FILE = "launch.log"
@@ -47,15 +47,15 @@ class RunLogs:
     Args:
         label: Name of what runs, for the folder's name.
         home: Folder of all runs; None is `logs_home()`.
-        kept: Number of runs that are kept; older ones are removed.
+        most: Number of runs that stay; older ones are removed.
     """
 
-    def __init__(self, label: str, home: Path | None = None, *, kept: int = KEPT_RUNS) -> None:
+    def __init__(self, label: str, home: Path | None = None, *, most: int = MOST_RUNS) -> None:
         self.folder: Path | None = None
         """Folder of this run; None before there is one."""
         self._label = re.sub(r"[^\w.-]+", "-", label, flags=re.ASCII)[:60] or "launch"
         self._home = home
-        self._kept = kept
+        self._most = most
         self._files: dict[str, _File] = {}
         self._own: _File | None = None
         self._lock = threading.Lock()
@@ -78,7 +78,7 @@ class RunLogs:
             self._give_up(f"no logs are kept: {error}")
             return
         _point_to(folder)
-        remove_old_runs(home, self._kept)
+        remove_old_runs(home, self._most)
 
     def add(self, name: str) -> None:
         """Create the file of one more process, `name`, once the folder is there."""
@@ -174,14 +174,14 @@ def file_names(names: list[str]) -> dict[str, str]:
     return given
 
 
-def remove_old_runs(home: Path, kept: int) -> None:
+def remove_old_runs(home: Path, most: int) -> None:
     """Remove all but the newest runs; other folders and runs that still go on stay.
 
     An empty folder is what a launcher leaves that was killed as it made it.
     """
     with contextlib.suppress(OSError):
         runs = sorted(each for each in home.iterdir() if _RUN.fullmatch(each.name) and not each.is_symlink())
-        for run in runs[: max(0, len(runs) - kept)]:
+        for run in runs[: max(0, len(runs) - most)]:
             if (run / OWN_FILE).is_file() and not _is_locked(run / OWN_FILE):
                 shutil.rmtree(run, ignore_errors=True)
             else:

@@ -129,7 +129,7 @@ def test_old_runs_are_removed_but_nothing_else_and_none_that_goes_on(tmp_path: P
 def test_opening_a_run_removes_old_ones(tmp_path: Path) -> None:
     for year in range(2001, 2010):
         make_run(tmp_path, f"{year}-01-01_00-00-00_follow")
-    run = RunLogs("follow", tmp_path, kept=2)
+    run = RunLogs("follow", tmp_path, most=2)
     run.open([], print)
     run.close()
     assert sorted(each.name[:10] for each in tmp_path.iterdir() if each.name != "latest") == [
