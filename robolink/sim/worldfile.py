@@ -82,9 +82,8 @@ def check_world(path: str | os.PathLike[str], *, text: str | None = None) -> Che
         description = _with_map(document, grid)
     except DocumentError as error:
         errors.append(error)
-    errors += first_mistakes(
-        _mistakes(document, description, grid), MOST_REPORTED + 2
-    )  # finding what overlaps takes time
+    # finding what overlaps takes time
+    errors += first_mistakes(_mistakes(document, description, grid), MOST_REPORTED + 2)
     return Checked(None if errors else with_paths(description, Path(path).parent), errors)
 
 

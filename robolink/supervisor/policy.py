@@ -305,7 +305,7 @@ class Policy:
         ]
 
     def restart(self, name: str, now: float) -> list[Action]:
-        """Handle a request to restart a process: it is stopped in order first if it runs, which does not count as a failure."""
+        """Handle a request to restart a process: one that runs is stopped in order first, and that is not a failure."""
         each = self.processes[name]
         if why_not := self.why_not_restarted(name):
             return [Say(f"{name} is not restarted: {why_not}")]
