@@ -153,8 +153,9 @@ class Recovery:
         with self._lock:
             has_offered, self._has_offered = self._has_offered, True
         if not has_offered:
-            self._offer = _Offer(self._holdings, self._declare_offer)
-            add(self._offer)
+            offer = _Offer(self._holdings, self._declare_offer)
+            add(offer)
+            self._offer = offer  # not before: the look at links that stand still uses it on another thread
         return Retained(min(stored_depth(qos) or MOST_RETAINED, MOST_RETAINED), MOST_BYTES)
 
     def mend(self, key: str, qos: QoSProfile, sink: Sink, add: Add) -> Mending | None:
