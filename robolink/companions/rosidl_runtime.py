@@ -14,8 +14,7 @@ from robolink.exceptions import EncodeError, MessageError, NotFoundError, neares
 from robolink.interfaces import ACTION_PARTS, KINDS, find, find_announced, names
 from robolink.interfaces.standard import INTERFACES
 from robolink.message import FieldType, Message, message_type
-from robolink.message.check import explain_value
-from robolink.message.convert import UnknownFieldError, converted
+from robolink.message.convert import UnknownFieldError, converted, explain_value
 from robolink.message.show import Style, as_csv, as_yaml, shown_data
 from robolink.message.slot_types import NamespacedType
 from robolink.message.text import text_of

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import _thread
 import itertools
+import math
 import random
 import threading
 from collections import deque
@@ -336,3 +337,20 @@ def _sink(
 
 def _nothing_waits() -> bool:
     return True
+
+
+def runner_of(program: ProgramLike | None) -> Runner | None:
+    """Return the calling thread, if it runs this program's code in virtual time; None leaves it to Python."""
+    if program is None:
+        return None
+    scheduler = program.host.scheduler
+    runner = scheduler.runner()
+    return None if runner is None or runner.is_real or runner is scheduler.outside else runner
+
+
+def wait_until(time: TimeBase, holds: Callable[[], bool], seconds: float | None) -> None:
+    """Let the others go on until `holds()`, for so many seconds at most; None is for ever."""
+    if seconds is not None and seconds <= 0:
+        time.pass_on()
+    else:
+        time.wait_until(holds, None if seconds is None else time.steady() + math.ceil(seconds * 1e9))

@@ -207,7 +207,7 @@ def _read(
 
 def _check_defaults(type_name: str, fields: dict[str, FieldType], defaults: dict[str, Any]) -> None:
     for name, value in defaults.items():
-        from robolink.message.check import explain_value  # late: it needs this module, and few types state any
+        from robolink.message.convert import explain_value  # late: it needs this module, and few types state any
 
         kind, where = fields[name], f"{type_name}.{name}"
         if kind.message is not None:

@@ -20,7 +20,7 @@ from robolink.message.annotations import once_per_type
 from robolink.message.base import Message, message_type
 from robolink.message.cdr_reader import ReaderSource
 from robolink.message.cdr_writer import WriterSource
-from robolink.message.check import explain
+from robolink.message.convert import explain
 
 LITTLE, BIG = b"\x00\x01\x00\x00", b"\x00\x00"
 

@@ -11,7 +11,7 @@ from typing import Any
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message
 from robolink.message.cdr_layout import CODES, SIZES, Lines, padded, phases
-from robolink.message.check import bools, fixed, instance
+from robolink.message.convert import bools, fixed, instance
 
 PADS = tuple(bytes(n) for n in range(8))
 

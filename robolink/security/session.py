@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import SecurityError, nearest
-from robolink.security import access, files
+from robolink.security import files, rights
 from robolink.security.keystore import CERTIFICATE, KEY, PERMISSIONS, ROUTER, checked_enclave, enclave_of
 from robolink.security.rights import Rights, load_rights
 from robolink.system import clocks
@@ -146,8 +146,8 @@ def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
             status = path.stat()
             found.add((str(path), status.st_mtime_ns, status.st_size))
     now = clocks.time_of_day()
-    for rights in security.everybody.values():
-        found.add((rights.enclave, sum(turn <= now for turn in rights.turns), 0))
+    for each in security.everybody.values():
+        found.add((each.enclave, sum(turn <= now for turn in each.turns), 0))
     return frozenset(found)
 
 
@@ -171,7 +171,7 @@ def settings(security: Security, interfaces: tuple[str, ...] = ()) -> dict[str, 
         "transport/link/tls": _tls(security.folder),
         # Memory that is shared would be plain text for every process of the same user.
         "transport/shared_memory/enabled": False,
-        "access_control": access.control(security.everybody, domain, trusted=trusted, interfaces=interfaces),
+        "access_control": rights.control(security.everybody, domain, trusted=trusted, interfaces=interfaces),
     }
 
 

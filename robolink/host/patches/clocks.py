@@ -16,8 +16,7 @@ from concurrent.futures import thread as pools
 from typing import Any
 
 from robolink.host.call_sites import is_users, note_use
-from robolink.host.participants import ProgramLike
-from robolink.host.waiting import runner_of
+from robolink.host.participants import ProgramLike, runner_of
 from robolink.running.defaults import get_defaults
 
 _CALENDAR = ("localtime", "gmtime", "ctime", "asctime", "strftime")

@@ -15,8 +15,7 @@ from concurrent.futures import thread as pools
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from robolink.host.call_sites import is_users
-from robolink.host.participants import Killed, ProgramLike
-from robolink.host.waiting import runner_of, wait_until
+from robolink.host.participants import Killed, ProgramLike, runner_of, wait_until
 from robolink.running.defaults import get_defaults
 
 if TYPE_CHECKING:

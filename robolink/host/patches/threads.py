@@ -15,10 +15,9 @@ from concurrent.futures import thread as pools
 from typing import Any
 
 from robolink.host.call_sites import is_users, note_use
-from robolink.host.participants import Killed, ProgramLike
+from robolink.host.participants import Killed, ProgramLike, runner_of, wait_until
 from robolink.host.patches import locks
 from robolink.host.threads import Worker, take_part
-from robolink.host.waiting import runner_of, wait_until
 from robolink.running.defaults import get_defaults
 
 _real_start, _real_join, _real_wait = threading.Thread.start, threading.Thread.join, threading.Condition.wait
