@@ -31,7 +31,7 @@ from robolink.system.processes import Variables
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import VARIABLE, NodeLoadError, NodeSource, load_node, workspace_of
-from robolink.workspace.node_factory import check_needs_nothing, make_node
+from robolink.workspace.load import check_needs_nothing, make_node
 
 if TYPE_CHECKING:
     from robolink.node import Node

@@ -27,7 +27,7 @@ from robolink.sim.description import Wheel
 from robolink.sim.schema import world_schema
 from robolink.sim.sensors import Sensor
 from robolink.workspace import NodeSource, load_node
-from robolink.workspace.node_factory import check_needs_nothing
+from robolink.workspace.load import check_needs_nothing
 from robolink.workspace.programs import NODES, component, program
 from robolink.world_node.messages import sensor_message, sensor_type
 

@@ -1,6 +1,5 @@
 """The workspace: a folder of nodes, systems and types, which are found (`find`) and loaded (`load`) by name."""
 
-from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.find import (
     VARIABLE,
     find_executable,
@@ -35,7 +34,7 @@ from robolink.workspace.programs import (
 )
 from robolink.workspace.purpose import purpose_of
 from robolink.workspace.ros_programs import RosProgramError, instead_of
-from robolink.workspace.source import Folder, NodeSource, canonical
+from robolink.workspace.source import Folder, NodeSource, built_in_workspace, canonical
 
 __all__ = [
     "Folder",

@@ -18,7 +18,6 @@ from pathlib import Path
 
 from robolink.exceptions import NotFoundError, nearest
 from robolink.system.files import expanded, is_file
-from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.installed import COLCON
 from robolink.workspace.packages import (
     BUILT_IN,
@@ -31,7 +30,7 @@ from robolink.workspace.packages import (
     source_packages,
 )
 from robolink.workspace.programs import NODES, executable_of, lacking_executable, nodes_in, program_names
-from robolink.workspace.source import Folder, NodeSource, canonical
+from robolink.workspace.source import Folder, NodeSource, built_in_workspace, canonical
 from robolink.workspace.trust import is_trusted, why_not
 
 VARIABLE = "ROBOLINK_WORKSPACE"

@@ -18,11 +18,10 @@ from typing import Any
 from robolink import interfaces
 from robolink.exceptions import DefinitionError, MessageError, NotFoundError
 from robolink.system.files import decoded, read_plain
-from robolink.workspace.built_in import built_in_workspace
 from robolink.workspace.find import user_workspace
 from robolink.workspace.modules import FINDER, Fill
 from robolink.workspace.packages import source_packages
-from robolink.workspace.source import Folder
+from robolink.workspace.source import Folder, built_in_workspace
 
 IDL = ".idl"
 """Suffix of the files that define a type in OMG IDL, of all three kinds."""

@@ -25,11 +25,10 @@ from typing import TYPE_CHECKING
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.extensions import ExtensionError, Registry, module_path
-from robolink.workspace.built_in import PACKAGE, built_in_workspace
 from robolink.workspace.installed import installed_executables
 from robolink.workspace.packages import compiled_executables, executable, executables, named, named_executables
 from robolink.workspace.ros_programs import CompiledProgramError, ros_program_error
-from robolink.workspace.source import NodeSource, canonical
+from robolink.workspace.source import PACKAGE, NodeSource, built_in_workspace, canonical
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -1,4 +1,4 @@
-"""Source of a node: a file, or a module of a package."""
+"""Source of a node: a file, or a module of a package; and the workspace that comes with robolink."""
 
 from __future__ import annotations
 
@@ -33,3 +33,13 @@ class NodeSource:
 def canonical(name: str) -> str:
     """Return `name` with `-` as `_`, since the two are the same in names."""
     return name.replace("-", "_")
+
+
+PACKAGE = Path(__file__).resolve().parent.parent
+"""Folder of the package `robolink`."""
+
+
+def built_in_workspace() -> Path:
+    """Return the workspace that comes with robolink: inside the wheel, or the repository."""
+    shared = PACKAGE / "share"
+    return shared if shared.is_dir() else PACKAGE.parent

@@ -6,8 +6,7 @@ Services(node, simulation, runner)                   # ~/reset, ~/pause, ~/spawn
 Shapes(node, simulation, runner.steady)              # ~/walls, ~/objects: markers for viewers
 """
 
-from robolink.world_node.diagnostics import diagnostics, listed, report
-from robolink.world_node.runner import Runner
+from robolink.world_node.runner import Runner, diagnostics, listed, report
 from robolink.world_node.services import Services
 from robolink.world_node.shapes import Shapes
 from robolink.world_node.simulation import Simulation

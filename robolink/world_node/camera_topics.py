@@ -1,11 +1,17 @@
-"""Publishers of a simulated camera: images, depths and calibration; an image is rendered only if somebody wants it."""
+"""Topics of a camera: its images, taken in a thread of their own, and their compression."""
 
 from __future__ import annotations
 
+import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
+from queue import SimpleQueue
 from typing import Any, TypeAlias
 
-from robolink.image import to_message
+from robolink.exceptions import InvalidHandle
+from robolink.image import ImageError, to_message
+from robolink.image.codecs import encoded
+from robolink.image.conversion import convert
 from robolink.interfaces.builtin_interfaces.msg import Time
 from robolink.interfaces.geometry_msgs.msg import TransformStamped
 from robolink.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
@@ -14,9 +20,92 @@ from robolink.message import encode
 from robolink.publisher import Publisher
 from robolink.sim import Shot
 from robolink.sim.sensors import Camera
-from robolink.world_node.compression import Compression
+from robolink.system import waits
 from robolink.world_node.messages import camera_info_message, camera_transforms
 from robolink.world_node.prepared import PreparedImage, Stamp
+
+
+class Compression:
+    """Makes compressed images; if that fails, it says so once, and makes none.
+
+    Args:
+        warn: Function that is called with the one line.
+    """
+
+    def __init__(self, warn: Callable[[str], object]) -> None:
+        self._warn, self._works = warn, True
+
+    def message(self, image: Any, encoding: str, header: Header) -> CompressedImage | None:
+        """Return an image as a JPEG, with the format that image_transport names; None if that cannot be done.
+
+        Args:
+            image: Pixels (rows, columns) or (rows, columns, channels).
+            encoding: Encoding of the pixels.
+            header: Stamp and frame.
+        """
+        if not self._works:
+            return None
+        grey = encoding == "mono8"
+        try:
+            data = encoded(image if grey else convert(image, encoding, "bgr8"), "jpg")
+        except ImageError as error:
+            self._works = False
+            self._warn(f"no compressed images: {error}")
+            return None
+        form = f"{encoding}; jpeg compressed {'mono8' if grey else 'bgr8'}"
+        return CompressedImage(header=header, format=form, data=data)
+
+
+MOST = 10
+"""Number of jobs with one key that may wait: a short stall loses nothing."""
+
+
+class Darkroom:
+    """Works off jobs in their order, on one thread, which begins with the first.
+
+    Args:
+        warn: Function that is called with a line about what went wrong.
+    """
+
+    def __init__(self, warn: Callable[[str], object]) -> None:
+        self._warn = warn
+        self._jobs: SimpleQueue[tuple[object, Callable[[], object]] | None] = SimpleQueue()
+        self._waiting: Counter[object] = Counter()
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+
+    def submit(self, key: object, job: Callable[[], object]) -> bool:
+        """Put a job in the queue; return False, and do nothing, if `MOST` with this key are waiting."""
+        with self._lock:
+            if self._waiting[key] >= MOST:
+                return False
+            self._waiting[key] += 1
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._work, name="robolink images", daemon=True)
+            self._thread.start()
+        self._jobs.put((key, job))
+        return True
+
+    def close(self) -> None:
+        """Do what has been submitted, and end the thread. Safe to call twice."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._jobs.put(None)
+            waits.join(thread)
+
+    def _work(self) -> None:
+        while (found := self._jobs.get()) is not None:
+            key, job = found
+            try:
+                job()
+            except (InvalidHandle, ConnectionError):
+                pass  # the robot has left, or the network, since the shot was taken
+            except Exception as error:  # noqa: BLE001 - whatever it is, it is told, and later images are rendered
+                self._warn(f"an image could not be published: {type(error).__name__}: {error}")
+            finally:
+                with self._lock:
+                    self._waiting[key] -= 1
+
 
 MakePublisher: TypeAlias = "Callable[[type[Any], str], Publisher[Any]]"
 

@@ -22,8 +22,7 @@ from robolink.message import encode
 from robolink.sim import Pose, Scan, Velocity
 from robolink.sim.arrays import Array
 from robolink.sim.sensors import Lidar
-from robolink.world_node.messages import odometry_message, scan_message, time_message, transform_message
-from robolink.world_node.uncertainty import Covariance
+from robolink.world_node.messages import Covariance, odometry_message, scan_message, time_message, transform_message
 
 _HEAD, _STAMP, _COUNT = 4, 8, 4
 """Sizes in bytes: the encapsulation header of a payload, a stamp, the count of a sequence."""

@@ -13,13 +13,10 @@ from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.sim import Pose, Reading, Robot, Shot, World, WorldDescription
 from robolink.sim.description import RobotDescription
 from robolink.system.terminal import shown
-from robolink.world_node.camera_topics import CameraTopics
-from robolink.world_node.compression import Compression
-from robolink.world_node.darkroom import Darkroom
+from robolink.world_node.camera_topics import CameraTopics, Compression, Darkroom
 from robolink.world_node.messages import time_message
 from robolink.world_node.prepared import Stamp, transforms_payload
-from robolink.world_node.robot_commands import RobotCommands
-from robolink.world_node.robot_topics import RobotTopics
+from robolink.world_node.robot_topics import RobotCommands, RobotTopics
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from robolink.workspace import program_names
-from robolink.workspace.built_in import built_in_workspace
+from robolink.workspace.source import built_in_workspace
 from tests.support.urdfs import ARM
 
 ROOT = Path(__file__).parents[2]

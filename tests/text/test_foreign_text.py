@@ -49,7 +49,7 @@ from robolink.message.show import Style, as_yaml
 from robolink.system.terminal import escaped, fit, is_fit, quoted, shown
 from robolink.tf2 import StaticTransformBroadcaster
 from robolink.transport import connect
-from robolink.world_node.robot_commands import joint_refusal
+from robolink.world_node.robot_topics import joint_refusal
 from tests.support.excused_commands import EXCUSED
 from tests.support.seen_by_commands import a_node_that_commands_see, spinning, when_said
 from tests.support.transforms import transform

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from robolink.exceptions import InvalidHandle
-from robolink.world_node.darkroom import MOST, Darkroom
+from robolink.world_node.camera_topics import MOST, Darkroom
 
 
 @pytest.fixture

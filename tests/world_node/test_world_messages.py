@@ -17,9 +17,8 @@ from robolink.message import decode, encode
 from robolink.sim import Inertia, Pose, Scan, Velocity, WheelState, World, WorldDescription
 from robolink.sim.description import Odom, OdomNoise, RobotDescription, Settings
 from robolink.sim.sensors import Bumper, Encoders, Imu, ImuNoise, Lidar, RangeFinder
-from robolink.world_node.messages import facing, odometry_message, sensor_message, time_message
-from robolink.world_node.robot_commands import ABSURD, ABSURD_WHEEL, joint_refusal, sane
-from robolink.world_node.uncertainty import Uncertainty
+from robolink.world_node.messages import Uncertainty, facing, odometry_message, sensor_message, time_message
+from robolink.world_node.robot_topics import ABSURD, ABSURD_WHEEL, joint_refusal, sane
 
 HEADER = Header(stamp=time_message(3_000_000_004), frame_id="base_scan")
 

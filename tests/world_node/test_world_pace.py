@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robolink.world_node.diagnostics import Rate, judged, listed
-from robolink.world_node.pace import BACKLOG, Pace, RateMeter
+from robolink.world_node.runner import BACKLOG, Pace, Rate, RateMeter, judged, listed
 
 MS = 1_000_000
 SECOND = 1_000_000_000

@@ -16,7 +16,7 @@ from robolink.cli.shared.output import tell
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.launch.shared_process import Member
 from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
-from robolink.workspace.node_factory import make_node
+from robolink.workspace.load import make_node
 
 if TYPE_CHECKING:
     from robolink.context import Context

@@ -32,7 +32,7 @@ from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context
 from robolink.wire import EndpointToken, NodeToken, graph_pattern, parse_token
 from robolink.workspace import NodeSource, find_node, load_node
-from robolink.workspace.node_factory import make_node
+from robolink.workspace.load import make_node
 
 if TYPE_CHECKING:
     from robolink.node import Node

@@ -53,7 +53,7 @@ from robolink.workspace import (
     user_workspace,
     workspace_of,
 )
-from robolink.workspace.node_factory import check_needs_nothing, make_node
+from robolink.workspace.load import check_needs_nothing, make_node
 
 if TYPE_CHECKING:
     from robolink.node import Node
