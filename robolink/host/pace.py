@@ -1,4 +1,4 @@
-"""Start, interruption and end of a host's programs, by its scheduler."""
+"""Pace of a host: its programs' start and end, its virtual time, and the watchdog of what blocks in real time."""
 
 from __future__ import annotations
 
@@ -155,7 +155,11 @@ BY_ITSELF = "wait by itself (not the same each time)"
 
 
 class Watchdog(threading.Thread):
-    """Thread that gives up code that does not go on for `scheduler.patience` real seconds, or time that does not."""
+    """Thread that gives up code that does not go on for `scheduler.patience` real seconds, or time that does not.
+
+    Where a program has several threads, one that blocks may wait for another of them (at a lock, say): the turn is
+    taken from it then, and it goes on beside the others until it waits in virtual time again.
+    """
 
     def __init__(self, scheduler: Scheduler) -> None:
         super().__init__(name="robolink host's watchdog", daemon=True)

@@ -317,7 +317,11 @@ def _of_the_user(error: BaseException) -> Any:
 
 
 def load(source: NodeSource, program: ProgramLike) -> Callable[[], Any]:
-    """Return the Node class of a source, or a function that runs its script. Raises what `load_node` raises."""
+    """Return the Node class of a source, or a function that runs its script. Raises what `load_node` raises.
+
+    A node's own file is loaded anew for every start, as in a process of its own: two programs from one file, and one
+    that was started again, share none of its variables. What it imports is shared: its neighbours, modules of packages.
+    """
     if not source.module:
         _forget(str(source.path.resolve()))
     return load_node(source, script=lambda found, reach: _script(found, reach, program))

@@ -1,4 +1,4 @@
-"""Compressed images as files hold them: JPEG, PNG and others by OpenCV."""
+"""Compressed images as files hold them: JPEG, PNG and others by OpenCV, and PNG without it."""
 
 from __future__ import annotations
 

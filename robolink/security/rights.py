@@ -1,4 +1,4 @@
-"""Rights of an enclave in a domain: whether it may publish, subscribe, request or reply, and by which rule."""
+"""Rights of an enclave in a domain: whether it may publish, subscribe, request or reply, as rules of Zenoh's too."""
 
 from __future__ import annotations
 
@@ -145,7 +145,11 @@ Expressions = Callable[[str], Keys]
 def control(
     enclaves: Mapping[str, Rights], domain: int, *, trusted: Iterable[str] = (), interfaces: Iterable[str] = ()
 ) -> dict[str, Any]:
-    """Return the setting `access_control` of a session.
+    """Return the setting `access_control` of a session: rules for the remote side of each link, by its certificate.
+
+    Zenoh denies what no rule allows, and a rule that denies beats those that allow. Each session holds the rules of all
+    enclaves, for what comes in and for what goes out, so that a peer that brings no rules of its own gets nothing
+    through.
 
     Args:
         enclaves: Rights by enclave; their domain is `domain`.

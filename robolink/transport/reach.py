@@ -1,4 +1,4 @@
-"""Network reach of a Zenoh session: the machines that its configuration allows, and those it is linked to."""
+"""Network reach of a Zenoh session: the machines that its configuration allows, its links, and who answers it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Security of a session's configuration: mutual TLS and access control, as the environment asks."""
+"""Security of a session's configuration: mutual TLS and access control, and the keys and rights of the present."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Handles of a Zenoh session: publishers, subscriptions and servers."""
+"""Handles of a Zenoh session: publishers, subscriptions, servers, liveliness tokens, and both sides of a call."""
 
 from __future__ import annotations
 

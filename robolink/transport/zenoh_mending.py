@@ -1,4 +1,4 @@
-"""Sink that puts messages in order again which come late, since their publisher was asked for them."""
+"""Sinks for messages that come late or twice: one puts them in order again, one passes each on once."""
 
 from __future__ import annotations
 

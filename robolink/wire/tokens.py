@@ -1,4 +1,4 @@
-"""Liveliness tokens of the ROS graph, by which nodes and their endpoints announce themselves."""
+"""Liveliness tokens of the ROS graph, by which nodes and endpoints announce themselves with their QoS profiles."""
 
 from __future__ import annotations
 

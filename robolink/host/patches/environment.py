@@ -1,4 +1,4 @@
-"""View that each program has of the process: command line, environment, standard input, main module."""
+"""View that each program has of the process (command line, environment, standard input), and its state afterwards."""
 
 from __future__ import annotations
 
