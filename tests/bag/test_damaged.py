@@ -70,6 +70,7 @@ def tried(path: Path) -> list[Said]:
         return []
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::robolink.documents.foreign.FileWarning")  # a key of the metadata is damaged, too
 @given(st.data())
 def test_a_damaged_bag_is_read_as_far_as_it_is_good(bags: list[Path], data: st.DataObject) -> None:

@@ -61,6 +61,7 @@ def test_a_page_in_the_middle_costs_what_was_in_it(bag: Path, whole: bytes, page
     assert len(saved) > len(MANY) - 100
 
 
+@pytest.mark.slow
 def test_every_verb_works_with_half_a_file(
     bag: Path, whole: bytes, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -51,6 +51,7 @@ def test_a_file_that_is_large_enough_is_followed_by_the_next(tmp_path: Path, sto
     assert [each.stamp - START for each in read(tmp_path / "bag")] == list(range(30))
 
 
+@pytest.mark.slow
 def test_a_file_whose_index_is_large_is_followed_by_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(writing, "LARGEST_SUMMARY", 2000)
     with BagWriter(tmp_path / "bag") as writer:

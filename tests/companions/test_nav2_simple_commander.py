@@ -274,6 +274,7 @@ def test_lifecycle_managers_start_and_stop_their_nodes(nav2: Nav2, run: Run, sys
     )
 
 
+@pytest.mark.slow
 def test_it_drives_the_simulated_robot(run: Run, system: System) -> None:
     system.launch("goto")
     assert run("""

@@ -59,6 +59,7 @@ def as_read(messages: object) -> list[tuple[str, bytes, int]]:
     return [(each.topic, each.data, each.stamp) for each in messages]  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("storage_id", ["mcap", "sqlite3"])
 def test_a_program_writes_and_reads_a_bag(tmp_path: Path, storage_id: str) -> None:
     writer = rosbag2_py.SequentialWriter()

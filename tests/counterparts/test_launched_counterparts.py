@@ -112,6 +112,7 @@ def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return package / "arm.launch.py"
 
 
+@pytest.mark.slow
 @pytest.mark.annex("nav2")
 def test_a_launch_file_starts_them_all(system: System, launch: Path) -> None:
     system.launch(launch, {"prefix": "one/"})

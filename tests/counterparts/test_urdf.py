@@ -141,6 +141,7 @@ def test_what_is_hostile_is_one_line(text: str, said: str) -> None:
     assert str(error.value).isprintable()
 
 
+@pytest.mark.slow
 def test_a_long_chain_is_read() -> None:
     count = 5_000
     links = " ".join(f"l{each}" for each in range(count + 1))

@@ -54,6 +54,7 @@ def test_a_robot_drives_and_avoids(system: System, workspace: Path) -> None:
     assert system.expect("/clock", type=Clock).clock.sec < 60  # of the supervisor: simulated time
 
 
+@pytest.mark.slow
 def test_devices_have_the_topics_of_webots_driver(system: System, workspace: Path) -> None:
     imu = '<plugin type="webots_ros2_driver::Ros2IMU"><topicName>/tilt</topicName><alwaysOn>true</alwaysOn></plugin>'
     rate = "<ros><topicName>/laser</topicName><updateRate>2</updateRate></ros>"
@@ -81,6 +82,7 @@ def test_devices_have_the_topics_of_webots_driver(system: System, workspace: Pat
     assert unheard == []  # nobody listens, and it is not always on
 
 
+@pytest.mark.slow
 def test_without_a_plugin_the_world_obeys_cmd_vel(system: System, workspace: Path) -> None:
     control = '<plugin type="webots_ros2_control::Ros2Control" />'
     wanted = EYES + control + '<device reference="gps" type="GPS"/><device reference="eye lft" type="DistanceSensor"/>'
@@ -94,6 +96,7 @@ def test_without_a_plugin_the_world_obeys_cmd_vel(system: System, workspace: Pat
     assert "left out: device 'eye lft': the world's robot has none of this name (did you mean 'eye_left'?)" in said
 
 
+@pytest.mark.slow
 def test_each_driver_finds_its_own_robot(system: System, workspace: Path) -> None:
     two = robot("other", 0.5) + robot("my cart", -0.5)
     system.launch(make_webots_package(workspace, robots=two))
@@ -103,6 +106,7 @@ def test_each_driver_finds_its_own_robot(system: System, workspace: Path) -> Non
     assert others[-1].pose.pose.position.x == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_driver_says_for_whom_it_waits(system: System, workspace: Path) -> None:
     system.launch(make_webots_package(workspace, robots=robot("other", 0.5) + robot("third", -0.5)))
     system.run(7.0)

@@ -69,6 +69,7 @@ def test_a_file_that_says_it_is_empty_is_read_to_its_end() -> None:
     assert b"Name:" in read_plain("/proc/self/status", 100_000)
 
 
+@pytest.mark.slow
 def test_of_many_mistakes_the_first_are_told() -> None:
     def told(count: int) -> list[str]:
         return [
@@ -80,6 +81,7 @@ def test_of_many_mistakes_the_first_are_told() -> None:
     assert told(30_000)[-2:] == ["a.yaml:1:1: wrong 19", "a.yaml: and 29,980 more mistakes"]
 
 
+@pytest.mark.slow
 def test_a_file_of_mistakes_only_is_answered_shortly() -> None:
     text = "[" + "x, " * 40_000 + "]"
     found = mistakes("a.yaml", list[int], text=text)

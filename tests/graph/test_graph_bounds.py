@@ -45,6 +45,7 @@ def test_a_session_that_announces_too_much_is_told_of_once_and_the_others_are_se
     assert graph._index.of_session == {"a1": 20, "b2": 10}
 
 
+@pytest.mark.slow
 def test_a_token_takes_a_kilobyte(context: Context) -> None:
     graph, texts = Graph(context.transport, 0), []
     for number in range(2000):

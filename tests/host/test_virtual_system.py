@@ -53,6 +53,7 @@ def test_a_minute_of_a_robots_life_is_the_same_twice_byte_for_byte(
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_another_robot_leaves_another_trace(tmp_path: Path) -> None:
     assert follow(tmp_path, 2.0, speed=0.4).hash != follow(tmp_path, 2.0, speed=0.3).hash
 

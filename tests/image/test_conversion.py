@@ -38,6 +38,7 @@ def is_the_same(source: str, target: str, rng: np.random.Generator, height: int,
     return True
 
 
+@pytest.mark.slow
 def test_every_two_encodings() -> None:
     rng = np.random.default_rng(17)
     done = sum(is_the_same(*each, rng, 6, 8) for each in itertools.product(ENCODINGS, ENCODINGS))

@@ -30,6 +30,7 @@ def found(course: list[Exercise]) -> list[tuple[bool, str]]:
     return [(each.good, each.text) for each in proofs(course, here_checked)]
 
 
+@pytest.mark.slow
 def test_a_new_exercise_fails_as_given_and_its_solution_passes(here: Path) -> None:
     assert new_exercise("stop_early") == here / "exercises/01_stop_early"
     (given, solution) = found(read_course(here / "exercises"))
@@ -38,6 +39,7 @@ def test_a_new_exercise_fails_as_given_and_its_solution_passes(here: Path) -> No
     assert solution[1].startswith("solution.py passes in ")
 
 
+@pytest.mark.slow
 def test_a_proof_speaks_portuguese(here: Path) -> None:
     folder = new_exercise("stop_early", language="pt")
     assert "# Dicas, uma de cada vez" in (folder / "exercise.yaml").read_text(encoding="utf-8")
@@ -72,6 +74,7 @@ def test_a_name_that_is_taken(here: Path) -> None:
         new_exercise("one")
 
 
+@pytest.mark.slow
 def test_a_proof_finds_what_is_wrong(here: Path) -> None:
     folder = new_exercise("one")
     (folder / "given.py").write_bytes((folder / "solution.py").read_bytes())

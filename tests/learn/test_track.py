@@ -27,6 +27,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Report:
     return given("stop", tmp_path_factory.mktemp("whole"))
 
 
+@pytest.mark.slow
 def test_a_robot_that_hits_a_wall_is_seen_to_do_so(whole: Report) -> None:
     track = whole.track
     assert track is not None
@@ -42,6 +43,7 @@ def test_a_robot_that_hits_a_wall_is_seen_to_do_so(whole: Report) -> None:
     assert (5.0, 0.0, 5.0, 1.0) in track.walls or (5.0, 1.0, 5.0, 0.0) in track.walls
 
 
+@pytest.mark.slow
 def test_a_long_run_is_thinned(whole: Report, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("robolink.learn.report.MOST_POSES", 60)
     thin = given("stop", tmp_path).track
@@ -64,6 +66,7 @@ def test_two_robots_and_none(tmp_path: Path) -> None:
     assert given("hello", tmp_path).track is None
 
 
+@pytest.mark.slow
 def test_a_world_that_cannot_be_looked_at_changes_no_result(
     whole: Report, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

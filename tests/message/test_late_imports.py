@@ -74,6 +74,7 @@ def holds_an_array(message: Any) -> bool:
     return any(isinstance(value, np.ndarray) for value in values) or any(map(holds_an_array, parts))
 
 
+@pytest.mark.slow
 def test_the_types_that_need_numpy_are_known() -> None:
     for name in names("msg"):
         assert has_fixed_numbers(find(name)) == holds_an_array(find(name)()), name

@@ -158,6 +158,7 @@ def test_what_is_no_hash_is_refused(node: Node, ask: Asker, text: str) -> None:
     assert answer.failure_reason.startswith("expected a type hash such as RIHS01_")
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=100), st.binary(max_size=40))
 def test_random_bytes_never_end_the_node(

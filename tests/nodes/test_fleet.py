@@ -53,6 +53,7 @@ class Counting(load_node(find_node('reactive_controller'))):
 """.replace("SCANS", str(SCANS))
 
 
+@pytest.mark.slow
 def test_the_fleet_has_a_controller_for_each_of_its_robots() -> None:
     world, controllers = plan(find_launch("fleet"))
     assert (world.name, controllers.name) == ("world", "controllers")
@@ -90,6 +91,7 @@ def nodes(fleet: Path, virtual: Context, monkeypatch: pytest.MonkeyPatch) -> Ite
     set_default_context(None)
 
 
+@pytest.mark.slow
 def test_in_virtual_time_each_robot_gets_its_scans_and_drives(
     nodes: list[Any], executor: SingleThreadedExecutor, log_lines: list[Record]
 ) -> None:

@@ -152,6 +152,7 @@ def test_a_refused_goal_says_why_and_leaves_the_present_one_alone(room: System, 
     assert client.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
+@pytest.mark.slow
 def test_rviz_sends_goals_by_a_topic(room: System) -> None:
     room.start(goto.Goto)
     publisher = room.node.create_publisher(PoseStamped, "goal_pose", 10)
@@ -184,6 +185,7 @@ def test_a_goal_of_another_frame_needs_a_transform(room: System) -> None:
     assert is_at(room, 5.0, 5.0, math.pi / 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frame", ["base_link", "/base_link"])
 def test_a_goal_in_a_frame_of_the_robot_does_not_move_along_with_it(room: System, frame: str) -> None:
     room.start(goto.Goto)
@@ -237,6 +239,7 @@ robots: [{name: robot, pose: [3, 3, 0], sensors: [{lidar: scan}]}]
 """
 
 
+@pytest.mark.slow
 def test_it_waits_before_an_obstacle_then_gives_up(system: System, tmp_path: Path) -> None:
     path = tmp_path / "wall.yaml"
     path.write_text(WALL)
@@ -254,6 +257,7 @@ def test_it_waits_before_an_obstacle_then_gives_up(system: System, tmp_path: Pat
     assert system.robot().contacts > 0
 
 
+@pytest.mark.slow
 def test_what_is_beyond_the_goal_is_not_in_the_way(room: System) -> None:
     room.start(goto.Goto)
     client = Client(room)

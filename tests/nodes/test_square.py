@@ -108,6 +108,7 @@ def test_it_ends_within_a_centimetre_of_its_start(
     assert farthest == pytest.approx(side * math.sqrt(2.0), abs=0.01)
 
 
+@pytest.mark.slow
 def test_it_gives_up_before_a_wall(system: System, tmp_path: Path) -> None:
     path = tmp_path / "room.yaml"
     path.write_text(ROOM.format(dt=0.01, rate=50, theta=0) + "walls: [{polyline: [[3.7, 2], [3.7, 4]]}]\n")
@@ -165,6 +166,7 @@ def test_what_cannot_be_is_refused_with_the_reason(system: System) -> None:
     assert results[2].reason == "direction: expected 'left' or 'right', got 'up'"
 
 
+@pytest.mark.slow
 def test_who_ends_it_on_the_way_stops_the_robot_and_who_is_done_is_silent(system: System) -> None:
     add_world(system, "empty_room")
     node, heard = system.start(square.Square), system.messages("cmd_vel")

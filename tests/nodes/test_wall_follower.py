@@ -131,6 +131,7 @@ def test_it_finds_a_wall_from_anywhere(pose: Pose) -> None:
     assert run.rms(0.4, after=30.0) < 0.05
 
 
+@pytest.mark.slow
 def test_it_makes_up_its_mind_between_walls_that_are_equally_far() -> None:
     assert Run(world("empty_room"), Follower(), 40.0).rms(0.5, after=30.0) < 0.05
 

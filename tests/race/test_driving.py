@@ -57,6 +57,7 @@ def test_a_maze_is_solved() -> None:
     assert result.progress == 1.0
 
 
+@pytest.mark.slow
 def test_who_stands_has_no_score(tmp_path: Path) -> None:
     (tmp_path / "ana.py").write_text(STANDS)
     result = Drive(MAZE._replace(seconds=5.0), str(tmp_path / "ana.py"), 1).run()
@@ -127,6 +128,7 @@ def test_a_node_of_the_workspace_is_found(tmp_path: Path, monkeypatch: pytest.Mo
     assert (result.mistake.kind, result.mistake.line) == ("syntax", 1)
 
 
+@pytest.mark.slow
 def test_a_program_has_any_name_that_a_file_can_have(tmp_path: Path) -> None:
     for name in ("bare", "UPPER.PY", "a b.py", "two\nlines.py"):
         file = tmp_path / name

@@ -79,6 +79,7 @@ def test_what_only_comes_late_is_not_lost(
     assert len(log_lines) == 1
 
 
+@pytest.mark.slow
 def test_a_stranger_with_gaps_costs_neither_memory_nor_time() -> None:
     gaps = Gaps()
     for number in range(2000):

@@ -54,6 +54,7 @@ def test_what_comes_between_two_calls_is_bounded_by_the_depth(node: Node) -> Non
 # Threads
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rival", ["spins another node once and again", "spins the executor", "moves the node"])
 def test_nothing_is_lost_beside_another_thread(node: Node, rival: str) -> None:
     other, ends = Node("other"), threading.Event()

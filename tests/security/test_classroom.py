@@ -78,6 +78,7 @@ def test_one_student_at_a_time_drives(folder: Path) -> None:
     assert may_drive(folder) == others
 
 
+@pytest.mark.slow
 def test_a_class_keeps_its_domain(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -95,6 +96,7 @@ def test_a_class_keeps_its_domain(
         assert "ROS_DOMAIN_ID=7\n" in (folder / "robot" / "security.env").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_no_turn_and_no_new_student_brings_back_who_was_withdrawn(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -110,6 +112,7 @@ def test_no_turn_and_no_new_student_brings_back_who_was_withdrawn(
     assert "'/student2' has been withdrawn: 'robolink security create_permission'" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_second_time_adds_students_and_keeps_keys(folder: Path) -> None:
     before = (folder / "student1" / "enclaves" / "student1" / "key.pem").read_bytes()
     assert main(["security", "class", str(folder), "--students", "4"]) == 0

@@ -88,6 +88,7 @@ def test_a_router_that_is_permissive_says_that_it_is_open(
     assert said.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_router_follows_its_permissions(store: Keystore, capsys: pytest.CaptureFixture[str]) -> None:
     store.create_enclave("/router")
     port = free_port()

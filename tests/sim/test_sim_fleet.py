@@ -162,6 +162,7 @@ def test_two_processes_live_the_same_life_to_the_last_bit() -> None:
     assert lives[0] == lives[1]
 
 
+@pytest.mark.slow
 def test_ways_and_noise_of_a_robot_do_not_depend_on_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     text = "robots:\n- {{name: r, pose: [0, 0], odom: {{noise: {{v: 0.05, w: 0.1}}}}}}\n{}"
     others = "\n".join(f"- {{name: o{k}, pose: [{k + 3}, 4], odom: {{noise: {{v: 0.1}}}}}}" for k in range(30))

@@ -35,6 +35,7 @@ def hall(seed: int) -> tuple[Surroundings, Array]:
     return Surroundings(Tiles(walls, np.full(30, 0.5)), circles_of(circles, random.uniform(0.1, 1, 100), owner)), poses
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(st.integers(0, 10**6), st.sampled_from(LIDARS))
 def test_hidden_circles_change_no_bit(seed: int, lidar: Lidar) -> None:

@@ -107,6 +107,7 @@ STAR = st.lists(st.floats(0.15, 1.0), min_size=3, max_size=14).map(
 )
 
 
+@pytest.mark.slow
 @given(STAR, st.floats(0.05, 20.0))
 @settings(max_examples=100, deadline=None)
 def test_any_outline_is_cut_into_convex_parts_without_a_rest(star: list[Point], scale: float) -> None:

@@ -192,6 +192,7 @@ def trace(seed: int | None) -> list[object]:
     return [*found, robot.contacts, robot.penetration]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_life_to_the_last_bit() -> None:
     first, again, other = trace(3), trace(3), trace(4)
     assert first == again

@@ -189,6 +189,7 @@ def test_a_file_that_is_not_refused_can_be_simulated(content: Any) -> None:
     assert np.isfinite([number for face in faces for vector in face[:3] for number in vector]).all()
 
 
+@pytest.mark.slow
 @given(st.text(st.sampled_from("[]{}:-,&*!|>'\"#%@ \n\t0a\x00é\ud800") | st.characters(), max_size=40))
 @example("robots: [{name: r, pose: [1e400, 0]}]")
 @settings(max_examples=150, deadline=None)

@@ -81,6 +81,7 @@ def test_ctrl_c_ends_a_run_with_what_has_come_until_then(folder: Path) -> None:
     assert (result.warnings, result.failures) == (["interrupted at 2 of 10 s"], [])
 
 
+@pytest.mark.slow
 def test_a_robots_way_contacts_and_pose_are_told() -> None:
     entries = read_launch_file(find_launch("follow"), {})
     result = simulate(entries, duration=10.0)
@@ -355,6 +356,7 @@ def test_a_seed_yields_where_a_node_wants_no_such(folder: Path, kind: str, value
     assert [each.message for each in logs if each.severity >= logging.LoggingSeverity.WARN] == [value]
 
 
+@pytest.mark.slow
 def test_a_seed_in_the_faults_is_everybodys(folder: Path) -> None:
     assert simulated(folder, "gambles", faults="seed: 5").hash == simulated(folder, "gambles", seed=5).hash
     assert simulated(folder, "gambles", seed=6, faults="seed: 5").hash == simulated(folder, "gambles", seed=6).hash

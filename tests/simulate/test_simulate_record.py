@@ -49,6 +49,7 @@ def test_all_that_is_published_is_recorded_at_its_virtual_time(folder: Path, tmp
         assert [each.depth for each in topic.offered_qos] == [10]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_and_another_one_others(folder: Path, tmp_path: Path) -> None:
     bags = []
     for number, seed in enumerate((3, 3, 4)):

@@ -99,6 +99,7 @@ def test_passes(system):
 """
 
 
+@pytest.mark.slow
 def test_a_failing_test_keeps_its_bag_and_says_where(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(TESTS)
     result = pytester.runpytest_inprocess("--robolink-record", "kept", "-p", "no:cacheprovider")

@@ -147,6 +147,7 @@ def test_it(system):
     )
 
 
+@pytest.mark.slow
 def test_the_story_is_told_wherever_a_test_fails(project: pytest.Pytester) -> None:
     text = """
 import unittest
@@ -219,6 +220,7 @@ def test_it(system):
     result.stdout.fnmatch_lines(["E *NodeFailure: counter failed at 0 s: ValueError: rude (test_it.py:*)"])
 
 
+@pytest.mark.slow
 def test_a_fault_that_comes_to_nothing_breaks_the_test_unless_that_has_failed(project: pytest.Pytester) -> None:
     text = """
 import pytest

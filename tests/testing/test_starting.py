@@ -20,6 +20,7 @@ nodes:
 """
 
 
+@pytest.mark.slow
 def test_a_launch_file_with_arguments_parameters_and_faults(tested: System, tmp_path: Path) -> None:
     file, faults = tmp_path / "drive.yaml", tmp_path / "faults.yaml"
     file.write_text(LAUNCH)

@@ -160,6 +160,7 @@ def test_both_motors_are_told_at_once_and_only_what_is_new(system: System) -> No
     assert len(commands) == 3
 
 
+@pytest.mark.slow
 def test_position_control_reaches_its_angle_and_holds_it(system: System, world: str) -> None:
     states = system.messages("/joint_states")
     system.start(simulation.SimulatedWorld, parameters={"world": world})
@@ -230,6 +231,7 @@ def test_sensors(system: System, world: str) -> None:
         bumper.getTargets()
 
 
+@pytest.mark.slow
 def test_the_lidars_first_value_is_on_the_left(system: System, world: str) -> None:
     system.start(simulation.SimulatedWorld, parameters={"world": world})
     driver = system.start(Driver)
@@ -263,6 +265,7 @@ def test_a_wrong_name_is_told_with_the_nearest(system: System, world: str) -> No
         later.robot.getDevice("nothing").setVelocity(1.0)
 
 
+@pytest.mark.slow
 def test_one_of_several_robots(system: System, tmp_path: Path) -> None:
     path = tmp_path / "two.wbt"
     path.write_text(WORLD + WORLD[WORLD.index("Robot {") :].replace("cart", "my cart").replace("0 0 0.1", "0 3 0.1"))

@@ -88,6 +88,7 @@ def test_an_omni_robot_goes_sideways(system: System) -> None:
     assert 0.0 < odometry[-1].pose.covariance[0] < 0.01
 
 
+@pytest.mark.slow
 def test_odometry_is_less_and_less_sure(system: System) -> None:
     odometry = system.messages("/ada/odom")
     system.start(simulation.SimulatedWorld, parameters={"world": "lab"})
@@ -196,6 +197,7 @@ def test_a_bumper_tells_of_a_touch(system: System, tmp_path: Path) -> None:
 # Frames
 
 
+@pytest.mark.slow
 def test_who_comes_late_knows_where_the_sensors_are_on_the_map(system: System) -> None:
     system.start(simulation.SimulatedWorld, parameters={"world": "lab"})
     system.run(1.0)

@@ -101,6 +101,7 @@ def trace(world: Any, system: System) -> str:
     return digest.hexdigest()
 
 
+@pytest.mark.slow
 def test_after_a_reset_the_same_life_begins_again_and_time_goes_on(system: System, world: Any) -> None:
     asked(system, "pause")
     first, again = trace(world, system), trace(world, system)

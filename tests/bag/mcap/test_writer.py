@@ -93,6 +93,7 @@ def test_a_message_larger_than_a_chunk_has_one_of_its_own(path: Path) -> None:
     assert [len(each.data) for each in read(path)] == list(sizes)
 
 
+@pytest.mark.slow
 def test_a_channel_that_comes_later_is_there(path: Path) -> None:
     with Writer(path, chunk_size=2_000) as writer:
         messages = []

@@ -93,6 +93,7 @@ def test_proto_masks_what_the_shell_would_take() -> None:
     assert _escaped('a "b" $HOME `c` \\') == 'a \\"b\\" \\$HOME \\`c\\` \\\\'
 
 
+@pytest.mark.slow
 def test_every_prototype_can_be_published() -> None:
     for name in names("msg"):
         cls = find(name)

@@ -120,6 +120,7 @@ def test_a_way_goes_on_and_a_path_is_replaced() -> None:
 # The commands
 
 
+@pytest.mark.slow
 def test_a_way_is_drawn_with_its_length(node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured) -> None:
     latch(node, "odom", odometry(0.0, 0.0), odometry(3.0, 4.0), odometry(3.0, 5.0))
     out = tmp_path / "way.png"
@@ -212,6 +213,7 @@ def test_elements_of_sequences_and_booleans_are_values(node: Node, tmp_path: Pat
     assert [line.get_ydata().tolist() for line in drawn[0].lines] == [[2.0], [1.0]]
 
 
+@pytest.mark.slow
 def test_a_byte_is_a_value_and_messages_that_lack_the_element_are_left_out(
     node: Node, tmp_path: Path, drawn: list[Any]
 ) -> None:
@@ -296,6 +298,7 @@ def test_a_picture_that_could_not_be_written_is_refused_before_listening(
         assert "needs matplotlib, which is not installed: pip install matplotlib\n" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_ctrl_c_draws_what_was_heard(
     node: Node, tmp_path: Path, drawn: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -357,6 +360,7 @@ def test_a_bags_trajectories_are_drawn(lap: Path, drawn: list[Any], capsys: Capt
     assert Path("way.png").read_bytes().startswith(PNG)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("requested", ["speed.data", "/speed/data"])
 def test_a_bags_values_are_drawn_over_the_times_at_which_they_came(lap: Path, drawn: list[Any], requested: str) -> None:
     assert main(["plot", "topic", requested, "--bag", "lap", "--out", "speed.png"]) == 0

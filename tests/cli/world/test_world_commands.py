@@ -201,6 +201,7 @@ def test_the_schema_says_what_every_key_means() -> None:
 # --- draw -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("suffix", "begins"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")])
 def test_a_picture_is_drawn(
     workspace: Path, suffix: str, begins: bytes, capsys: Captured, monkeypatch: pytest.MonkeyPatch
@@ -212,6 +213,7 @@ def test_a_picture_is_drawn(
     assert "matplotlib.pyplot" not in sys.modules  # which could open a window
 
 
+@pytest.mark.slow
 def test_the_longer_side_has_the_size(workspace: Path) -> None:
     assert main(["world", "draw", "hall", "hall.png", "--size", "500"]) == 0
     header = Path("hall.png").read_bytes()[16:24]

@@ -263,6 +263,7 @@ def test_words_of_a_command_line() -> None:
         words("'$(var x) b'")
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.recursive(

@@ -64,6 +64,7 @@ def test_it_is_simulated(my_robot: TutorialWorkspace) -> None:
     assert told["messages"]["/wheel_state"] == told["messages"]["/joint_states"] == 200
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("my_robot")
 def test_it_is_tested(system: System) -> None:
     use_interfaces()
