@@ -22,6 +22,7 @@ def fields(definition: object) -> list[object]:
     return [each for each in definition[1] if each[0] != PLACEHOLDER]  # type: ignore[index]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names("msg"))
 def test_rosbags_reads_the_same_types(name: str) -> None:
     read = get_types_from_msg(message_definition(find(name)), name)

@@ -26,6 +26,7 @@ rclpy.spin(node)
     stage.host.run(5.0)
 
 
+@pytest.mark.slow
 def test_a_script_that_blocks_is_named(stage: Stage) -> None:
     text = """
 import _thread

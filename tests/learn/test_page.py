@@ -117,6 +117,7 @@ def test_hints_come_one_by_one_and_count_for_the_terminal_too(tmp_path: Path) ->
         assert told["hints"][0].startswith("O feixe da frente")
 
 
+@pytest.mark.slow
 def test_progress_and_language_of_another_command_are_shown(tmp_path: Path) -> None:
     with desk(tmp_path) as made:
         made.wait_for("learn", checking=None)

@@ -79,6 +79,7 @@ OF_TURTLES = pytest.mark.annex("turtlesim")
 TRIED = [pytest.param(*case, marks=OF_TURTLES if case[0].startswith("turtle") else ()) for case in CASES]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("program", "parameters", "topic", "message"), TRIED, ids=[f"{case[0].split()[-1]} {case[2]}" for case in CASES]
 )

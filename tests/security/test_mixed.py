@@ -63,6 +63,7 @@ def test_with_keys_beside_one_that_has_none(store: Keystore, monkeypatch: pytest
     holder.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("secured", [True, False])
 def test_a_stranger_is_neither(secured: bool) -> None:
     with stranger() as port:

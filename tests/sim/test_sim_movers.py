@@ -64,6 +64,7 @@ def test_a_robot_is_pushed_along_and_never_passed_through(speed: float) -> None:
     assert math.hypot(robot.twist.v, robot.twist.sideways) < 1.2 * speed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.2, 0.5, 1.0, 2.0, 5.0, 10.0])
 @pytest.mark.parametrize("robot", ["shape: {circle: 0.17}", "shape: {box: [0.5, 0.34]}"])
 @pytest.mark.parametrize("mover", ["circle: 0.3", "box: [0.6, 0.6]"])

@@ -92,6 +92,7 @@ def failure(program: str, folder: Path, system: System) -> BaseException:
     return error.__cause__ if isinstance(error, NodeFailure) and error.__cause__ is not None else error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("body", "advice"), MISTAKES, ids=[each[1][:40] for each in MISTAKES])
 def test_a_usual_mistake_is_told_with_what_to_do(body: str, advice: str, tmp_path: Path, system: System) -> None:
     last = formatted(failure(f"{HEAD}{body}\n", tmp_path, system)).splitlines()[-1]

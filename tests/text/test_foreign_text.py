@@ -300,6 +300,7 @@ def _end_after_a_look(monkeypatch: pytest.MonkeyPatch) -> None:
     when_said(monkeypatch, watch, "say_json", press)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "each", [pytest.param(each, id=" ".join(each.words)[:60]) for tries in TRIED.values() for each in tries]
 )

@@ -119,6 +119,7 @@ def test_whoever_comes_after_the_holder_takes_its_port(shared: str) -> None:
             until(lambda: third.tokens(GRAPH) == ["@ros2_lv/0/second"])
 
 
+@pytest.mark.slow
 def test_a_stranger_on_the_port_is_named(shared: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("robolink.transport.joining.LINK_WITHIN", 0.1)
     (endpoint,) = json.loads(Path(shared).read_text())["listen"]["endpoints"]

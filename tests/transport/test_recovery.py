@@ -145,6 +145,7 @@ def publish(outlet: Any, first: int, count: int) -> list[bytes]:
     return sent
 
 
+@pytest.mark.slow
 def test_what_was_published_during_a_cut_comes_afterwards_in_its_order(make_cut: MakeCut) -> None:
     net = make_cut()
     outlet, ears = net.here.advertise(CHATTER, KEEP_ALL), [Ear(net.there, qos=KEEP_ALL) for _ in range(2)]
@@ -161,6 +162,7 @@ def test_what_was_published_during_a_cut_comes_afterwards_in_its_order(make_cut:
     assert ears[0].arrived.empty()
 
 
+@pytest.mark.slow
 def test_keep_last_has_the_last_of_a_cut(make_cut: MakeCut) -> None:
     net = make_cut()
     outlet, ear = net.here.advertise(CHATTER, QoSProfile(depth=10)), Ear(net.there, qos=QoSProfile(depth=10))
@@ -170,6 +172,7 @@ def test_keep_last_has_the_last_of_a_cut(make_cut: MakeCut) -> None:
     assert ear.take(10) == sent[-10:]
 
 
+@pytest.mark.slow
 def test_a_publisher_that_was_silent_before_the_cut_is_asked_as_well(make_cut: MakeCut) -> None:
     net = make_cut()
     outlet, ear = net.here.advertise(CHATTER, KEEP_ALL), Ear(net.there, qos=KEEP_ALL)
@@ -180,6 +183,7 @@ def test_a_publisher_that_was_silent_before_the_cut_is_asked_as_well(make_cut: M
     assert ear.take(3) == sent
 
 
+@pytest.mark.slow
 def test_a_thinned_topic_is_not_asked_for(make_cut: MakeCut) -> None:
     net = make_cut(ROBOLINK_LIMITS="{size: {/chatter: 1000}}")
     outlet, ear = net.here.advertise(CHATTER, KEEP_ALL), Ear(net.there, qos=KEEP_ALL)

@@ -72,6 +72,7 @@ def pair(domain: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[Pair]:
         yield Pair(here, there)
 
 
+@pytest.mark.slow
 def test_topics_go_on_in_both_directions(pair: Pair) -> None:
     outlets = pair.here.advertise(CHATTER, KEEP_ALL), pair.there.advertise(OTHER, KEEP_ALL)
     ears = Ear(pair.there, CHATTER, KEEP_ALL), Ear(pair.here, OTHER, KEEP_ALL)
@@ -86,6 +87,7 @@ def test_topics_go_on_in_both_directions(pair: Pair) -> None:
         assert outlet.matched
 
 
+@pytest.mark.slow
 def test_services_go_on_in_both_directions(pair: Pair) -> None:
     for server, client in ((pair.here, pair.there), (pair.there, pair.here)):
         desk = Desk(server)

@@ -101,6 +101,7 @@ def test_the_services_steer_it(robot: Node, heard: queue.SimpleQueue[str]) -> No
     assert run.end() == 0
 
 
+@pytest.mark.slow
 def test_keys_pause_step_and_change_the_rate(
     robot: Node, heard: queue.SimpleQueue[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -138,6 +138,7 @@ def test_no_managed_nodes(robot: Node, capsys: Captured) -> None:
     assert capsys.readouterr() == ("0\n", "")
 
 
+@pytest.mark.slow
 def test_a_node_that_does_not_spin(robot: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
     stuck, works = LifecycleNode("stuck", context=robot.context), LifecycleNode("works", context=robot.context)
     told = "robolink: no answer within {} s from /stuck/get_state: does the node spin?\n"

@@ -133,6 +133,7 @@ def test_a_way_is_drawn_with_its_length(node: Node, tmp_path: Path, drawn: list[
     assert capsys.readouterr().err == f"listening to /lab/odom for 0.1 s\nwrote {out}\n"
 
 
+@pytest.mark.slow
 def test_several_ways_are_in_one_picture_and_a_silent_topic_does_no_harm(
     node: Node, tmp_path: Path, drawn: list[Any]
 ) -> None:
@@ -166,6 +167,7 @@ def test_the_simulated_world_is_drawn_below(node: Node, tmp_path: Path, drawn: l
     assert drawn[0].get_xlim()[1] > 6.9  # the corners' room is 7 m wide
 
 
+@pytest.mark.slow
 @pytest.mark.annex("webots")
 def test_what_is_left_out_of_a_world_of_webots_is_told_in_a_line(
     node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured
@@ -178,6 +180,7 @@ def test_what_is_left_out_of_a_world_of_webots_is_told_in_a_line(
     assert capsys.readouterr().err.startswith(f"robolink: {path}: not known here, so this is not there: Fridge\n")
 
 
+@pytest.mark.slow
 def test_a_world_that_cannot_be_found_is_told_of_and_the_way_is_drawn(
     node: Node, tmp_path: Path, drawn: list[Any], capsys: Captured
 ) -> None:
@@ -192,6 +195,7 @@ def test_a_world_that_cannot_be_found_is_told_of_and_the_way_is_drawn(
     assert reported[-1] == "robolink: no world named 'atlantis'"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("field", ["/lab/odom.twist.twist.linear.x", "lab/odom/twist/twist/linear/x"])
 def test_values_are_drawn_over_the_time_of_their_stamps(
     node: Node, tmp_path: Path, drawn: list[Any], field: str
@@ -205,6 +209,7 @@ def test_values_are_drawn_over_the_time_of_their_stamps(
     assert drawn[0].lines[0].get_xydata().tolist() == [[0, 0], [1, 0.5], [3, 1]]
 
 
+@pytest.mark.slow
 def test_elements_of_sequences_and_booleans_are_values(node: Node, tmp_path: Path, drawn: list[Any]) -> None:
     latch(node, "scan", LaserScan(ranges=[1.0, 2.0]))
     latch(node, "bumper", Bool(data=True))
@@ -316,6 +321,7 @@ def test_ctrl_c_draws_what_was_heard(
     assert len(drawn[0].lines[0].get_xydata()) == 2
 
 
+@pytest.mark.slow
 def test_other_nodes_called_world_do_no_harm(node: Node, tmp_path: Path, drawn: list[Any]) -> None:
     world = made(node.context, "world")  # it has no parameters to ask for
     latch(node, "odom", odometry(3.0, 1.0), odometry(4.0, 1.0))

@@ -207,6 +207,7 @@ def test_reasons_are_given_after_a_second_and_the_end_comes_after_five() -> None
     assert (verbs.PATIENCE, verbs.Mode().timeout) == (1.0, 5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "reason"),
     [

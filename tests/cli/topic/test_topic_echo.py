@@ -95,6 +95,7 @@ def test_a_message_that_a_filter_cannot_tell_of_is_left_out_and_told_once(node: 
     assert err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_lost_messages_are_told_unless_not_wanted(node: Node, capsys: Captured) -> None:
     publisher = node.create_publisher(Int32, "/count", LATCHED)
     for number in range(5):

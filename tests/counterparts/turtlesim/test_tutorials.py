@@ -189,6 +189,7 @@ def test_a_command_is_published_once(desk: Desk) -> None:
     wait_until(lambda: desk.pose[2] > 0.5)
 
 
+@pytest.mark.slow
 def test_a_stream_of_commands_and_its_meters(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     when_said(monkeypatch, pub, "say", lambda text: press_ctrl_c(text) if "#2" in text else None)
     told = desk.ros2(f"ros2 topic pub -r 20 /turtle1/cmd_vel geometry_msgs/msg/Twist '{DRIVE}'", code=130)

@@ -105,6 +105,7 @@ def test_good_files_have_none(home: Path) -> None:
     assert found == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "report"), bad_files())
 def test_the_mistake_of_reading_is_among_them(home: Path, text: str, report: str) -> None:
     """What `launch` refuses `--validate` tells of, in the same words; what only planning refuses is told later."""

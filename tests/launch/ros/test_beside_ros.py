@@ -213,6 +213,7 @@ def _marked(description: Description) -> Any:
     return pytest.param(description, id=description.name, marks=marks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("description", [_marked(each) for each in descriptions()])
 def test_a_description_does_what_it_does_in_ros(description: Description, here: Path, context: Context) -> None:
     found = _differences(description, here, context)

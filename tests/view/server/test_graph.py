@@ -86,6 +86,7 @@ def test_a_clock_of_another_type_is_none() -> None:
         assert system.source.capabilities().count("time") == 0
 
 
+@pytest.mark.slow
 def test_statistics_of_topics_that_nobody_has_subscribed_to() -> None:
     with shown() as system, system.client() as client:
         publisher = system.node.create_publisher(String, "chat", 10)

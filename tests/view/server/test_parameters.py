@@ -276,6 +276,7 @@ def test_the_nodes_reason_is_told() -> None:
             assert node.get_parameter("speed").value == 0.5
 
 
+@pytest.mark.slow
 def test_a_node_that_does_not_answer_stalls_nothing() -> None:
     with shown() as system:
         with_parameters(system)

@@ -31,6 +31,7 @@ def test_a_type_that_is_not_installed_is_asked_for_at_its_node() -> None:
         assert client.next(subscription) == encode(Secret(number=7))
 
 
+@pytest.mark.slow
 def test_a_type_that_nobody_describes_is_told() -> None:
     with shown() as system, system.client() as client:  # nobody spins the node, so it does not answer
         system.node.create_publisher(Secret, "secret", 10)
@@ -53,6 +54,7 @@ def test_many_subscriptions_at_once_are_made_by_and_by(monkeypatch: pytest.Monke
         assert not any(each.get_subscription_count() for each in publishers[:10])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subprotocol", ["robolink.v1", "foxglove.websocket.v1"])
 def test_a_client_that_stands_still_gets_the_newest_when_it_reads_again(subprotocol: str) -> None:
     most = 100
