@@ -268,8 +268,8 @@ class Client(ServiceEnd):
             raise self._gone_(f"the client of {self.service_name}")
         packed = self._encode(request), self._endpoint.attachment()
         if self.introspection is not None:
-            asked = unpack_attachment(packed[1])
-            self.introspection.tell(ServiceEventInfo.REQUEST_SENT, request, asked.sequence, asked.gid)
+            requested = unpack_attachment(packed[1])
+            self.introspection.tell(ServiceEventInfo.REQUEST_SENT, request, requested.sequence, requested.gid)
         return packed
 
     def take(self) -> Any:
@@ -316,10 +316,10 @@ class Client(ServiceEnd):
 
     def _read(self, arrived: Any) -> Any:
         payload, attachment = self._transport.read(arrived)
-        asked = unpack_attachment(attachment)
+        requested = unpack_attachment(attachment)
         response = self._decode(payload)
         if self.introspection is not None:
-            self.introspection.tell(ServiceEventInfo.RESPONSE_RECEIVED, response, asked.sequence, asked.gid)
+            self.introspection.tell(ServiceEventInfo.RESPONSE_RECEIVED, response, requested.sequence, requested.gid)
         return response
 
     def _no_answer(self, bad: Exception | None) -> ServiceError:
@@ -335,7 +335,7 @@ class Client(ServiceEnd):
         self.malformed += 1
         if self.malformed == 1:
             get_logger(self.logger_name).warning(
-                f"{self.service_name}: refused an answer that is no {self._endpoint.type_name}: {error}"
+                f"{self.service_name}: refused an answer that is not a {self._endpoint.type_name}: {error}"
                 " (the next ones are only counted)"
             )
         return error

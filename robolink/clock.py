@@ -34,8 +34,8 @@ class JumpThreshold:
     """Threshold of a jump callback: the jumps that it is called for.
 
     Args:
-        min_forward: Smallest jump forward, above zero; None is no jump forward.
-        min_backward: Smallest jump backward, below zero; None is no jump backward.
+        min_forward: Smallest jump forward, above zero; None for none.
+        min_backward: Smallest jump backward, below zero; None for none.
         on_clock_change: True is also every change of the clock's source, to or from /clock.
 
     Raises:
@@ -335,12 +335,12 @@ class ROSClock(Clock):
 
     def _jump(self, change: ClockChange, act: Callable[[], None], after: int) -> None:
         jump = TimeJump(change, Duration(nanoseconds=after - self.now_ns()))
-        told = [handle for handle in self._jumps if handle.threshold.met_by(jump)]
-        for handle in told:
+        reported = [handle for handle in self._jumps if handle.threshold.met_by(jump)]
+        for handle in reported:
             if handle.pre_callback is not None:
                 handle.pre_callback()
         act()
-        for handle in told:
+        for handle in reported:
             if handle.post_callback is not None:
                 handle.post_callback(jump)
         for watcher in list(self._watchers):

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from robolink.running.ports import Loop
     from robolink.transport.base import Transport
 
-TOLD_WITHIN = 2.0
+REPORTED_WITHIN = 2.0
 """Longest wait for the shutdown callbacks after a signal, in seconds, before the network is left."""
 
 
@@ -67,7 +67,7 @@ class Context:
         """True if everything of this context is on the wire as Humble spells it."""
         self.inbox = self.make_inbox(parked=True)
         """Inbox of the entities that no executor has."""
-        self._wanted = transport
+        self._requested = transport
         self._transport: Transport | None = None
         self._graph: Graph | None = None
         self._sweeper = self._platform.make_sweeper()
@@ -77,7 +77,7 @@ class Context:
         self._domain_id = 0
         self._callbacks: list[Callable[[], Any]] = []
         self._teller = 0
-        self._told: queue.SimpleQueue[None] = queue.SimpleQueue()
+        self._reported: queue.SimpleQueue[None] = queue.SimpleQueue()
         self._nodes: weakref.WeakValueDictionary[int, Any] = weakref.WeakValueDictionary()  # in the order of making
         self._platform.join(self)
 
@@ -102,11 +102,11 @@ class Context:
             if self._initialized:
                 raise ContextError("Context.init() must only be called once")
             self._domain_id = _domain_id(domain_id)
-            self.speaks_humble = humble.is_asked_for(os.environ)
+            self.speaks_humble = humble.is_requested(os.environ)
             self.arguments = parse_arguments(self._platform.argv() if args is None else args)
             if initialize_logging:
                 self._platform.begin_logging(self.arguments, self.time)
-            self._wanted = self._platform.transport(self._wanted)
+            self._requested = self._platform.transport(self._requested)
             self._initialized = self._ok = True
         signals.watch(self)
 
@@ -121,8 +121,8 @@ class Context:
             if self._transport is None:
                 from robolink.transport import connect
 
-                wanted = self._wanted or os.environ.get("ROBOLINK_TRANSPORT") or "zenoh"
-                self._transport = connect(wanted, self._domain_id, enclave=self.arguments.enclave)
+                expected = self._requested or os.environ.get("ROBOLINK_TRANSPORT") or "zenoh"
+                self._transport = connect(expected, self._domain_id, enclave=self.arguments.enclave)
                 self._sweeper.add(self.inbox)
             return self._transport
 
@@ -244,7 +244,7 @@ class Context:
         try:
             self._tell()
         finally:
-            self._told.put(None)
+            self._reported.put(None)
 
     def shutdown(self) -> None:
         """End it: spinning stops and the network is left. Raises ContextError (RuntimeError) when it is not there."""
@@ -256,7 +256,7 @@ class Context:
             self._tell()
         elif self.interrupted and self._teller != _thread.get_ident():
             with contextlib.suppress(queue.Empty):
-                waits.get(self._told, TOLD_WITHIN)
+                waits.get(self._reported, REPORTED_WITHIN)
         self._close()
 
     def try_shutdown(self) -> None:

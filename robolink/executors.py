@@ -179,8 +179,8 @@ class Executor:
         """
         self._nodes_.evict()
         chosen = None if nodes is None else list(nodes)
-        wanted = None if chosen is None else lambda entity: entity.node in (None, *chosen)
-        entity, taken = self._waiting.wait(self, self._waiting.deadline(timeout_sec), condition, wanted)
+        expected = None if chosen is None else lambda entity: entity.node in (None, *chosen)
+        entity, taken = self._waiting.wait(self, self._waiting.deadline(timeout_sec), condition, expected)
         return Task(self._run_and_look, (entity, taken)), entity, entity.node
 
     def _wait_for_ready_callbacks(

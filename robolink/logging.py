@@ -66,7 +66,7 @@ def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bo
         detailed_error: rclpy's; changes nothing.
 
     Raises:
-        ValueError: if `level` is no severity.
+        ValueError: if `level` is not a severity.
     """
     levels.set(name, LoggingSeverity(level))
 

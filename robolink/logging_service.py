@@ -53,8 +53,8 @@ def _refused(reason: str) -> SetLoggerLevelsResult:
     return SetLoggerLevelsResult(successful=False, reason=reason)
 
 
-def _set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
-    if wanted.level not in LoggingSeverity.__members__.values():
+def _set_level(expected: LoggerLevel) -> SetLoggerLevelsResult:
+    if expected.level not in LoggingSeverity.__members__.values():
         return _refused(NO_LEVEL)
-    logging.set_logger_level(wanted.name, wanted.level, detailed_error=True)
+    logging.set_logger_level(expected.name, expected.level, detailed_error=True)
     return SetLoggerLevelsResult(successful=True)

@@ -31,7 +31,7 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     Raises:
         ValueError: if type and value do not agree.
-        TypeError: if the value is of no parameter's type, or `type_` is no Parameter.Type.
+        TypeError: if the value is of no parameter's type, or `type_` is not a Parameter.Type.
     """
 
     class Type(IntEnum):
@@ -61,7 +61,7 @@ class Parameter(Generic[AllowableParameterValueT]):
             raise TypeError(f"the given value is not {what}: {parameter_value!r}")
 
         def check(self, parameter_value: AllowableParameterValue) -> bool:
-            """True if `parameter_value` is of this type; an int is no DOUBLE, but a bool is an INTEGER, as in rclpy."""
+            """True if a value is of this type; an int is not a DOUBLE, but a bool is an INTEGER, as in rclpy."""
             if self is Parameter.Type.NOT_SET:
                 return parameter_value is None
             if self.name in _SCALARS:
@@ -214,21 +214,21 @@ def parameter_dict_from_yaml_file(
 
     overrides = read_parameter_file(parameter_file)
     sections = list(dict.fromkeys(each.pattern for each in overrides))
-    wanted = _wanted_sections(sections, use_wildcard, target_nodes)
-    missing = [each for each in wanted if each not in sections]
+    expected = _sections_of(sections, use_wildcard, target_nodes)
+    missing = [each for each in expected if each not in sections]
     if missing:
         hint = nearest(missing[0], sections) or f": it has {', '.join(sections) or 'none'}"
         text = f"{parameter_file}:1:1: no parameters for node '{missing[0]}'{hint}"
-        if len(missing) == len(wanted):
+        if len(missing) == len(expected):
             raise ParameterFileError(text)
         warnings.warn(text, RuntimeWarning, stacklevel=2)
-    if not wanted:
+    if not expected:
         raise ParameterFileError(f"{parameter_file}:1:1: no parameters for the nodes asked for")
-    values = {namespace + each.name: each.value for part in wanted for each in overrides if each.pattern == part}
+    values = {namespace + each.name: each.value for part in expected for each in overrides if each.pattern == part}
     return {name: Parameter(name, value=value).to_parameter_msg() for name, value in values.items()}
 
 
-def _wanted_sections(sections: Sequence[str], use_wildcard: bool, target_nodes: Sequence[str] | None) -> list[str]:
+def _sections_of(sections: Sequence[str], use_wildcard: bool, target_nodes: Sequence[str] | None) -> list[str]:
     wildcard = [each for each in sections if use_wildcard and each == "/**"]
     if target_nodes:
         return wildcard + [f"/{node.strip('/')}" for node in target_nodes]

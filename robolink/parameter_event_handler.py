@@ -70,9 +70,9 @@ class ParameterEventHandler:
         def event_callback(self, event: ParameterEvent) -> None:
             """Call those whose parameter is in the `event`, as new or changed, then those for all events."""
             with self._lock:
-                wanted = [(key, list(handles)) for key, handles in self.parameter_callbacks.items()]
+                expected = [(key, list(handles)) for key, handles in self.parameter_callbacks.items()]
                 for_all = list(self.event_callbacks)
-            for (parameter_name, node_name), handles in wanted:
+            for (parameter_name, node_name), handles in expected:
                 parameter = ParameterEventHandler.get_parameter_from_event(event, parameter_name, node_name)
                 if parameter is not None:
                     for handle in handles:

@@ -200,6 +200,6 @@ class _Outlets:
             outlet.close()
 
 
-def _no_message(wanted: type, given: object) -> str:
-    advice = f"; a message is made with (): {wanted.__name__}()" if given is wanted else ""
-    return f"Expected {wanted}, got {type(given)}{advice}"
+def _no_message(expected: type, given: object) -> str:
+    advice = f"; a message is made with (): {expected.__name__}()" if given is expected else ""
+    return f"Expected {expected}, got {type(given)}{advice}"

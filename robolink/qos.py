@@ -378,8 +378,8 @@ def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile
         publisher_qos: Profile of the publisher.
         subscription_qos: Profile of the subscription.
     """
-    kept = publisher_qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
-    if kept and subscription_qos.durability is DurabilityPolicy.VOLATILE:
+    retained = publisher_qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+    if retained and subscription_qos.durability is DurabilityPolicy.VOLATILE:
         return QoSCompatibility.WARNING, (
             "WARNING: the publisher is TRANSIENT_LOCAL and the subscription VOLATILE: "
             "what was published before it came does not arrive;"

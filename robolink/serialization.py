@@ -22,7 +22,7 @@ def deserialize_message(serialized_message: bytes, message_type: type[MsgT]) -> 
         message_type: Message class.
 
     Raises:
-        DecodeError: (a ValueError) if the bytes are no message of this type.
+        DecodeError: (a ValueError) if the bytes are not a message of this type.
     """
     check_is_valid_msg_type(message_type)
     return cast(MsgT, decode(message_type, serialized_message))

@@ -128,7 +128,7 @@ class Service(ServiceEnd):
                     return self.send_response(refusal, RequestHeader(query, asker.sequence, asker.gid))
             request = self._decode(query.payload)
         except (DecodeError, WireError) as error:
-            self._refuse(f"it is no {self._endpoint.type_name}: {error}")
+            self._refuse(f"it is not a {self._endpoint.type_name}: {error}")
             query.close()
             return None
         header = RequestHeader(query, asker.sequence, asker.gid)
@@ -174,13 +174,13 @@ class Service(ServiceEnd):
         header.query.reply(self._encode(response), pack_attachment(header.sequence_number, now, header.client_gid))
         header.query.close()
         if self.introspection is not None:
-            asked = header.sequence_number, header.client_gid
-            self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *asked)
+            requested = header.sequence_number, header.client_gid
+            self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *requested)
 
     def _wrong_response(self, response: object) -> str:
-        wanted = f"the callback of service {self.service_name} must return a {self.srv_type.__name__}.Response"
+        expected = f"the callback of service {self.service_name} must return a {self.srv_type.__name__}.Response"
         advice = "" if response is not None else f": is `return response` missing at the end of {named(self.callback)}?"
-        return f"{wanted}, got {response!r:.80}{advice}"
+        return f"{expected}, got {response!r:.80}{advice}"
 
     def _refuse(self, reason: str) -> None:
         self.malformed += 1

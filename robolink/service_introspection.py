@@ -97,7 +97,7 @@ class ServiceEnd(Receiver):
             introspection_state: OFF, METADATA or CONTENTS.
 
         Raises:
-            TypeError: if `introspection_state` is no ServiceIntrospectionState.
+            TypeError: if `introspection_state` is not a ServiceIntrospectionState.
         """
         if not isinstance(introspection_state, ServiceIntrospectionState):
             raise TypeError(f"introspection_state: expected a ServiceIntrospectionState, got {introspection_state!r}")

@@ -255,7 +255,7 @@ class Subscription(Receiver, Generic[MsgT]):
             ros = (
                 "whose attachment is not ROS 2's"
                 if isinstance(error, WireError)
-                else f"that is no {self._endpoint.type_name}"
+                else f"that is not a {self._endpoint.type_name}"
             )
             get_logger(self.logger_name).warning(
                 f"{self.topic_name}: dropped a message {ros}: {error} (the next ones are only counted)"

@@ -78,7 +78,7 @@ class TimeSource:
         return self._node
 
     def attach_clock(self, clock: ROSClock) -> None:
-        """Set this `clock` from now on. Raises ValueError for what is no ROSClock."""
+        """Set this `clock` from now on. Raises ValueError for what is not a ROSClock."""
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")
         if self._last is not None:

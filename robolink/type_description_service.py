@@ -54,13 +54,13 @@ class TypeDescriptionService:
     def _answer(
         self, request: GetTypeDescription.Request, response: GetTypeDescription.Response
     ) -> GetTypeDescription.Response:
-        asked = "" if request.type_hash == NO_HASH else request.type_hash
-        if asked and not HASH.fullmatch(asked):
-            return _refused(response, f"expected a type hash such as RIHS01_ and 64 hex digits, got {shown(asked)}")
+        requested = "" if request.type_hash == NO_HASH else request.type_hash
+        if requested and not HASH.fullmatch(requested):
+            return _refused(response, f"expected a type hash such as RIHS01_ and 64 hex digits, got {shown(requested)}")
         for each in self._types():
-            if (type_hash(each) == asked) if asked else (type_name(each) == request.type_name):
+            if (type_hash(each) == requested) if requested else (type_name(each) == request.type_name):
                 return _described(response, each, request.include_type_sources)
-        return _refused(response, f"this node does not use {shown(asked or request.type_name)}")
+        return _refused(response, f"this node does not use {shown(requested or request.type_name)}")
 
     def _types(self) -> Iterator[type[Any]]:
         node = self._node()
@@ -104,28 +104,28 @@ def _refused(response: GetTypeDescription.Response, reason: str) -> GetTypeDescr
 
 
 def _described(
-    response: GetTypeDescription.Response, asked: type[Any], with_sources: bool
+    response: GetTypeDescription.Response, requested: type[Any], with_sources: bool
 ) -> GetTypeDescription.Response:
     from robolink.interfaces.type_description_interfaces.msg import TypeSource
 
     response.successful, response.failure_reason = True, ""
-    response.type_description = to_message(described(asked))
+    response.type_description = to_message(described(requested))
     if with_sources:
-        response.type_sources = [TypeSource(**_source(each)) for each in _reached(asked)]
+        response.type_sources = [TypeSource(**_source(each)) for each in _reached(requested)]
     return response
 
 
-def _reached(asked: type[Any]) -> list[type[Any]]:
+def _reached(requested: type[Any]) -> list[type[Any]]:
     """Return a type and then, by name, those that it is made of."""
     found: dict[str, type[Any]] = {}
-    waiting = [asked]
+    waiting = [requested]
     while waiting:
         each = waiting.pop()
         if type_name(each) not in found:
             found[type_name(each)] = each
             waiting.extend(_made_of(each))
-    del found[type_name(asked)]
-    return [asked, *(found[name] for name in sorted(found))]
+    del found[type_name(requested)]
+    return [requested, *(found[name] for name in sorted(found))]
 
 
 def _made_of(cls: type[Any]) -> list[type[Any]]:

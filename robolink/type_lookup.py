@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ANSWER_WITHIN = 1.5
 """Timeout of one node's answer, in seconds."""
-MOST_ASKED = 3
+MOST_REQUESTED = 3
 """Most nodes that are asked."""
 SERVICE = "get_type_description"
 SERVICE_TYPE = "type_description_interfaces/srv/GetTypeDescription"
@@ -89,7 +89,7 @@ def _nodes_with(context: Context, endpoint: EndpointToken) -> Iterator[tuple[str
     named = [each for each in tokens if each.type_name == endpoint.type_name]
     same = [each for each in named if endpoint.type_hash in (NO_HASH, each.type_hash)]
     others = {each.full_node_name for each in same} - {own}
-    for name in sorted(name for name in others if f"{name}/{SERVICE}" in serving)[: MOST_ASKED - 1]:
+    for name in sorted(name for name in others if f"{name}/{SERVICE}" in serving)[: MOST_REQUESTED - 1]:
         yield name, True
 
 

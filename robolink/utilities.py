@@ -76,10 +76,10 @@ def get_available_rmw_implementations() -> set[str]:
     Raises RuntimeError if it lists one that is not there.
     """
     there = {get_rmw_implementation_identifier()}
-    wanted = {each for each in os.environ.get("RMW_IMPLEMENTATIONS", "").split(os.pathsep) if each}
-    if wanted - there:
-        raise RuntimeError(f"RMW_IMPLEMENTATIONS: there is no {', '.join(sorted(wanted - there))}, only {min(there)}")
-    return wanted or there
+    expected = {each for each in os.environ.get("RMW_IMPLEMENTATIONS", "").split(os.pathsep) if each}
+    if expected - there:
+        raise RuntimeError(f"RMW_IMPLEMENTATIONS: there is no {', '.join(sorted(expected - there))}, only {min(there)}")
+    return expected or there
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:

@@ -125,7 +125,7 @@ class Waitable:
         raise NotImplementedError
 
     def take_data(self) -> Any:
-        """Return what `execute` gets; from then on it is not ready, until there is more."""
+        """Return the data that `execute` gets; from then on it is not ready, until there is more."""
         raise NotImplementedError
 
     def execute(self, taken_data: Any) -> Awaitable[None]:

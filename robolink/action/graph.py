@@ -30,11 +30,11 @@ def part_name(action: str, part: str) -> str:
 
 def actions(services: NamesAndTypes, topics: NamesAndTypes) -> NamesAndTypes:
     """Return the actions of which all five parts exist, each with its types such as ``pkg/action/Fibonacci``."""
-    asked, told = _parts(services), _parts(topics)
+    requested, reported = _parts(services), _parts(topics)
     found = []
-    for name in sorted(asked.keys() & told.keys()):
-        if asked[name].keys() >= SERVICES and told[name].keys() >= TOPICS:
-            types = sorted(each for each in told[name][FEEDBACK] if each.endswith(FEEDBACK_TYPE))
+    for name in sorted(requested.keys() & reported.keys()):
+        if requested[name].keys() >= SERVICES and reported[name].keys() >= TOPICS:
+            types = sorted(each for each in reported[name][FEEDBACK] if each.endswith(FEEDBACK_TYPE))
             found.append((name, [each.removesuffix(FEEDBACK_TYPE) for each in types]))
     return found
 

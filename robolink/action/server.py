@@ -113,9 +113,9 @@ class ServerGoalHandle:
         Raises:
             TypeError: if it is of another type.
         """
-        wanted = self._action_server.action_type.Feedback
-        if not isinstance(feedback, wanted):
-            raise TypeError(f"Expected {wanted}, got {type(feedback)}")
+        expected = self._action_server.action_type.Feedback
+        if not isinstance(feedback, expected):
+            raise TypeError(f"Expected {expected}, got {type(feedback)}")
         with self._action_server._lock:
             if not self._destroyed:
                 self._action_server._publish_feedback(self.goal_id, feedback)
@@ -303,8 +303,8 @@ class ActionServer(Waitable):
 
     async def _on_goal(self, request: Any, header: RequestHeader) -> None:
         """Accept or reject a goal, answer, and hand it over then."""
-        wanted = bytes(request.goal_id.uuid) not in self._goal_handles and await self._is_wanted(request.goal)
-        handle = self._accept(request.goal_id, request.goal) if wanted else None
+        expected = bytes(request.goal_id.uuid) not in self._goal_handles and await self._is_requested(request.goal)
+        handle = self._accept(request.goal_id, request.goal) if expected else None
         response: Any = self._action_type.Impl.SendGoalService.Response(accepted=handle is not None)
         if handle is not None:
             response.stamp = handle._goal_info.stamp
@@ -312,12 +312,12 @@ class ActionServer(Waitable):
         if handle is not None:
             await run_to_its_end(self._handle_accepted_callback, handle)
 
-    async def _is_wanted(self, goal: Any) -> bool:
+    async def _is_requested(self, goal: Any) -> bool:
         response = await run_to_its_end(self._goal_callback, goal)
         if not isinstance(response, GoalResponse):
             self._logger.warning(
                 f"{self._action_name}: a goal is rejected, since the goal callback returned {response!r:.80},"
-                " which is no GoalResponse"
+                " which is not a GoalResponse"
             )
         return response is GoalResponse.ACCEPT
 
@@ -381,7 +381,7 @@ class ActionServer(Waitable):
         """Run a goal's callback to its end, whatever comes; the goal has ended and has a result then."""
         try:
             result = await run_to_its_end(callback, handle)
-        except (ExternalShutdownException, KeyboardInterrupt):  # Ctrl-C is no fault of the callback
+        except (ExternalShutdownException, KeyboardInterrupt):  # Ctrl-C is not a fault of the callback
             self._end(handle, self._action_type.Result())
             raise
         except Exception as error:  # noqa: BLE001 - the goal has failed, not the node
@@ -392,14 +392,14 @@ class ActionServer(Waitable):
 
     def _checked(self, handle: ServerGoalHandle, result: Any) -> Message:
         """Return the result, or an empty one in place of another object: the client waits for something."""
-        wanted = self._action_type.Result
+        expected = self._action_type.Result
         try:
-            if not isinstance(result, wanted):
-                raise TypeError(f"expected {wanted.__name__}, got {result!r:.80}")
+            if not isinstance(result, expected):
+                raise TypeError(f"expected {expected.__name__}, got {result!r:.80}")
             encode(result)
         except (TypeError, EncodeError) as error:
             self._logger.error(f"{self._named(handle)}: its execute callback returned no result: {error}")
-            return wanted()
+            return expected()
         return result
 
     def _end(self, handle: ServerGoalHandle, result: Message) -> None:

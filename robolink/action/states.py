@@ -74,28 +74,30 @@ NO_GOAL = bytes(16)
 """Goal id that means none in particular."""
 
 
-def goals_to_cancel(asked: GoalInfo, goals: Sequence[GoalStatus]) -> tuple[int, list[GoalInfo]]:
+def goals_to_cancel(requested: GoalInfo, goals: Sequence[GoalStatus]) -> tuple[int, list[GoalInfo]]:
     """Return a return code of CancelGoal, and the goals that are meant and can still be cancelled.
 
     An id without a stamp means that goal; a stamp means all goals that were accepted then or earlier, beside the one of
     the id if there is one; neither means all. Only a goal that is asked for alone can be unknown, or have ended.
     """
-    wanted, until = bytes(asked.goal_id.uuid), _nanoseconds(asked.stamp)
-    if wanted != NO_GOAL and not until:
-        return _one(wanted, goals)
-    everything = wanted == NO_GOAL and not until
+    expected, until = bytes(requested.goal_id.uuid), _nanoseconds(requested.stamp)
+    if expected != NO_GOAL and not until:
+        return _one(expected, goals)
+    everything = expected == NO_GOAL and not until
     meant = [
         each.goal_info
         for each in goals
         if is_cancelable(each.status)
-        and (everything or _nanoseconds(each.goal_info.stamp) <= until or bytes(each.goal_info.goal_id.uuid) == wanted)
+        and (
+            everything or _nanoseconds(each.goal_info.stamp) <= until or bytes(each.goal_info.goal_id.uuid) == expected
+        )
     ]
     return CancelGoal.Response.ERROR_NONE, meant
 
 
-def _one(wanted: bytes, goals: Sequence[GoalStatus]) -> tuple[int, list[GoalInfo]]:
+def _one(expected: bytes, goals: Sequence[GoalStatus]) -> tuple[int, list[GoalInfo]]:
     for each in goals:
-        if bytes(each.goal_info.goal_id.uuid) == wanted:
+        if bytes(each.goal_info.goal_id.uuid) == expected:
             if is_cancelable(each.status):
                 return CancelGoal.Response.ERROR_NONE, [each.goal_info]
             return CancelGoal.Response.ERROR_GOAL_TERMINATED, []

@@ -129,9 +129,9 @@ def braking(distance: float, limits: Limits) -> float:
     return math.sqrt(1.6 * limits.acceleration * distance) if distance > 0.0 else 0.0
 
 
-def slowed(wanted: float, speed: float, limits: Limits, dt: float) -> float:
-    """Return the speed `dt` seconds on the way from `speed` to `wanted` (m/s), by the acceleration of `limits`."""
-    return speed + clipped(wanted - speed, limits.acceleration * dt)
+def slowed(expected: float, speed: float, limits: Limits, dt: float) -> float:
+    """Return the speed `dt` seconds on the way from `speed` to `expected` (m/s), by the acceleration of `limits`."""
+    return speed + clipped(expected - speed, limits.acceleration * dt)
 
 
 def turning(off: float, speed: float, limits: Limits, dt: float) -> float:

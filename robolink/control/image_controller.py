@@ -69,7 +69,7 @@ class ImageController(SensorController):
         self.command(twist, words)
 
     def refuse(self, fault: str) -> None:
-        """Stop for an image that is no use, and warn unless the one before was none either.
+        """Stop for an image that is of no use, and warn unless the one before was none either.
 
         Args:
             fault: The reason, as the middle of a line.

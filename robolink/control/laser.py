@@ -24,7 +24,7 @@ LONGEST_GAP = 2.0
 def returns(scan: LaserScan) -> tuple[Array, Array]:
     """Return the angles (radians, 0 ahead, in [-pi, pi]) and ranges (metres) of the beams of `scan` that met something.
 
-    +inf, NaN and what lies outside of the scan's limits is no return; -inf is one at `range_min`, since it
+    +inf, NaN and what lies outside of the scan's limits is not a return; -inf is one at `range_min`, since it
     means nearer than that. Any number of beams, any field of view and start angle will do, and both arrays are
     empty when nothing is in reach.
     """
@@ -35,7 +35,7 @@ def returns(scan: LaserScan) -> tuple[Array, Array]:
 
 
 def points(scan: LaserScan) -> tuple[Array, Array]:
-    """Return what the beams of `scan` met, as `returns` does, as points: metres ahead, and metres to the left."""
+    """Return the points that the beams of `scan` met, as `returns` does: metres ahead, and metres to the left."""
     met, ranges = _met(scan)
     if not len(met):
         return np.empty(0), ranges

@@ -149,7 +149,7 @@ def listed(names: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def mistake_in(pattern: str) -> str | None:
-    """Return what is wrong with a name; None if nothing is."""
+    """Return the error of a name; None if there is none."""
     if _ALLOWED.fullmatch(pattern) is None:
         return f"'{pattern}' is not a name: it has a-z, A-Z, digits, _ and /, and * or ** for what may stand there"
     return None

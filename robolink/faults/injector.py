@@ -54,10 +54,10 @@ class _PlannedCrash:
     has_happened: bool = False
 
     def unmet(self) -> Unmet:
-        why, told = (
+        why, reported = (
             (Why.IN_VAIN, "the node did not run then") if self.is_over else (Why.TOO_EARLY, "the run ended before")
         )
-        return Unmet(f"{spelled(self.crash)} did not happen: {told}", why)
+        return Unmet(f"{spelled(self.crash)} did not happen: {reported}", why)
 
 
 class Injector:
@@ -163,9 +163,9 @@ class Injector:
 
     def program_of(self, node: str) -> str:
         """Return the program in which `node` runs. Raises `NotFoundError` with the nearest name."""
-        wanted = node.lstrip("/")
+        expected = node.lstrip("/")
         for program, names in self.network.programs.items():
-            if wanted in names:
+            if expected in names:
                 return program
         known = sorted({name for names in self.network.programs.values() for name in names})
         raise NotFoundError("node", node, known)

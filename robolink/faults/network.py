@@ -260,9 +260,9 @@ class FaultyNetwork:
         return vain._replace(why=Why.WILD) if has_pattern(added.names) else vain
 
     def _wrong_name(self, fault: MessageFault) -> str:
-        for kind, wanted in (("topic", fault.topic), ("service", fault.service)):
+        for kind, expected in (("topic", fault.topic), ("service", fault.service)):
             known = sorted(each.text for each in self._names if each.of_service is (kind == "service"))
-            if missing := _missing(wanted, known):
+            if missing := _missing(expected, known):
                 return f"no {kind} '{missing}' was received by any node{near('/' + missing.lstrip('/'), known)}"
         return self.wrong_node((*listed(fault.from_), *listed(fault.to)))
 
@@ -273,9 +273,9 @@ class FaultyNetwork:
         return f"no node was ever named '{missing}'{near(missing.lstrip('/'), known)}" if missing else ""
 
 
-def _missing(wanted: str | Sequence[str], known: Sequence[str]) -> str:
+def _missing(expected: str | Sequence[str], known: Sequence[str]) -> str:
     """Return the first exact name that is none of the known ones; '' if there is none."""
-    return next((each for each in exact(wanted) if not any(map(matcher((each,)), known))), "")
+    return next((each for each in exact(expected) if not any(map(matcher((each,)), known))), "")
 
 
 def _identity(fault: MessageFault) -> str:

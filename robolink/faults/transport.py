@@ -90,7 +90,7 @@ class _Interceptor:
         self._now, self._at = network.time.steady, network.time.at
 
     def route(self) -> Sink:
-        """Return what the network is to call now: the sink itself if no fault can concern it."""
+        """Return the function for the network to call now: the sink itself if no fault can concern it."""
         return self._receiving() if self.network.may_meet(self.name) else self.sink
 
     def _receiving(self) -> Sink:

@@ -72,7 +72,7 @@ def reflection_from_matrix(matrix: ArrayLike) -> tuple[Vector, Vector]:
     """Return a point and the normal of the plane at which `matrix` mirrors. Raises ValueError if it does not mirror."""
     factor, origin, normal = scale_from_matrix(matrix)
     if normal is None or abs(factor + 1.0) > 1e-6:
-        raise ValueError(f"this matrix is no reflection: {np.asarray(matrix).tolist()}")
+        raise ValueError(f"this matrix is not a reflection: {np.asarray(matrix).tolist()}")
     return origin, normal
 
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from robolink.graph.graph import Graph
     from robolink.transport.base import Sink
 
-MOST_TOLD = 10
+MOST_REPORTED = 10
 """Most warnings for one topic of a node; a system in which all is wrong must not drown in them."""
 
 _ACTS = {
@@ -57,16 +57,16 @@ class Disagreements:
 
     def __init__(self, logger_name: str) -> None:
         self._logger_name = logger_name
-        self._told: dict[str, set[tuple[str, frozenset[str]]]] = {}
+        self._reported: dict[str, set[tuple[str, frozenset[str]]]] = {}
 
     def tell(self, own: EndpointToken, other: EndpointToken) -> None:
         """Log one warning about an end that will never meet this one, unless that has been done."""
-        told = self._told.setdefault(own.name, set())
+        reported = self._reported.setdefault(own.name, set())
         pair = (other.full_node_name, frozenset((own.type_name + own.type_hash, other.type_name + other.type_hash)))
-        if pair in told or len(told) >= MOST_TOLD:
+        if pair in reported or len(reported) >= MOST_REPORTED:
             return
-        told.add(pair)
-        end = "" if len(told) < MOST_TOLD else " (no more of these are told)"
+        reported.add(pair)
+        end = "" if len(reported) < MOST_REPORTED else " (no more of these are told)"
         get_logger(self._logger_name).warning(_explained(own, other) + end)
 
 

@@ -26,12 +26,14 @@ class DistroError(RobolinkError, ValueError):
     """ROBOLINK_ROS_DISTRO is none of ROS 2's distributions."""
 
 
-def is_asked_for(environ: Mapping[str, str]) -> bool:
+def is_requested(environ: Mapping[str, str]) -> bool:
     """True if ROBOLINK_ROS_DISTRO asks for Humble's dialect throughout. Raises DistroError for an unknown one."""
-    asked = environ.get(VARIABLE, "").strip().lower()
-    if asked and asked not in DISTROS:
-        raise DistroError(f"{VARIABLE}: no distribution '{asked[:80]}'{nearest(asked, DISTROS)}: {', '.join(DISTROS)}")
-    return asked == "humble"
+    requested = environ.get(VARIABLE, "").strip().lower()
+    if requested and requested not in DISTROS:
+        raise DistroError(
+            f"{VARIABLE}: no distribution '{requested[:80]}'{nearest(requested, DISTROS)}: {', '.join(DISTROS)}"
+        )
+    return requested == "humble"
 
 
 class FromHumbleKey(NamedTuple):

@@ -89,8 +89,8 @@ def raw_message(image: Pixels, found: Encoding, encoding: str, header: Header | 
         encoding: The encoding that the message names.
         header: Stamp and frame; None leaves them empty.
     """
-    wanted = encoding_of(encoding)
-    if (wanted.depth, wanted.channels) != (found.depth, found.channels):
+    expected = encoding_of(encoding)
+    if (expected.depth, expected.channels) != (found.depth, found.channels):
         raise ImageError(f"encoding specified as {encoding}, but image has incompatible type {found.cv_type}")
     message = Image(height=image.shape[0], width=image.shape[1], encoding=encoding)
     if header is not None:
@@ -110,7 +110,7 @@ def decompressed(message: CompressedImage, encoding: str = "passthrough") -> Pix
         encoding: The wanted encoding.
 
     Raises:
-        ImageError: without OpenCV, for bytes that are no picture, and if it cannot be converted.
+        ImageError: without OpenCV, for bytes that are not a picture, and if it cannot be converted.
     """
     _check_type(message, CompressedImage)
     image, coded = decoded(np.asarray(message.data, np.uint8))
@@ -123,12 +123,12 @@ def _checked(image: Any) -> Pixels:
     return image  # type: ignore[return-value]
 
 
-def _check_type(message: Any, wanted: type[Any]) -> None:
-    if isinstance(message, wanted):
+def _check_type(message: Any, expected: type[Any]) -> None:
+    if isinstance(message, expected):
         return
     found = getattr(message, "__ros_type__", "") or type(message).__name__
     hint = ": compressed_imgmsg_to_cv2 reads it" if isinstance(message, CompressedImage) else ""
-    raise ImageError(f"expected a message of {wanted.__ros_type__}, got {shown(found, 60)}{hint}")
+    raise ImageError(f"expected a message of {expected.__ros_type__}, got {shown(found, 60)}{hint}")
 
 
 def _size(message: Image) -> tuple[int, int, int]:

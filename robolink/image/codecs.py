@@ -26,14 +26,14 @@ _CODED = {
 def decoded(data: np.ndarray[Any, Any]) -> tuple[Pixels, str]:
     """Return the pixels of a file's bytes, as they are in it, and their encoding: OpenCV's order, ``bgr8``.
 
-    Raises ImageError without OpenCV, and for bytes that are no picture.
+    Raises ImageError without OpenCV, and for bytes that are not a picture.
     """
     cv2 = opencv("a compressed image")
     if not data.size:
         raise ImageError("the compressed image is empty")
     image = call(f"decode {data.size} bytes", cv2.imdecode, data, cv2.IMREAD_UNCHANGED)
     if image is None:
-        raise ImageError(f"the {data.size} bytes are no JPEG, PNG or other picture, or break off")
+        raise ImageError(f"the {data.size} bytes are not a JPEG, PNG or other picture, or break off")
     found = encoding_of_array(image)
     return image, _CODED.get((found.depth, found.channels), found.name)
 

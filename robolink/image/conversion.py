@@ -44,61 +44,61 @@ def convert(image: Pixels, source: str, target: str) -> Pixels:
         raise ImageError(f"an image of {source} is {came.cv_type}, and this one is {found.cv_type}")
     if target in PASSTHROUGH or target == source:
         return np.array(image)
-    wanted = encoding_of(target)
-    if not _has_same_channels(came, wanted):
-        image = _coloured(image, came, wanted)
-    elif came.depth == wanted.depth:
+    expected = encoding_of(target)
+    if not _has_same_channels(came, expected):
+        image = _coloured(image, came, expected)
+    elif came.depth == expected.depth:
         return np.array(image)
-    return _deep(image, came, wanted)
+    return _deep(image, came, expected)
 
 
-def _has_same_channels(came: Encoding, wanted: Encoding) -> bool:
+def _has_same_channels(came: Encoding, expected: Encoding) -> bool:
     """Return True if only the depth may change. Raises ImageError if a colour would have to be guessed."""
-    if came.colours and wanted.colours:
-        return came.colours == wanted.colours and "bayer" not in came.colours
-    if not came.colours and wanted.colours:
+    if came.colours and expected.colours:
+        return came.colours == expected.colours and "bayer" not in came.colours
+    if not came.colours and expected.colours:
         raise ImageError(
-            f"[{came.name}] is not a color format. but [{wanted.name}] is. The conversion does not make sense:"
+            f"[{came.name}] is not a color format. but [{expected.name}] is. The conversion does not make sense:"
             " ask for 'passthrough', and scale the numbers yourself"
         )
-    if came.channels != wanted.channels:
+    if came.channels != expected.channels:
         what = "is a color format but" if came.colours else "and"
         raise ImageError(
-            f"[{came.name}] {what} [{wanted.name}] do not have the same number of channels:"
-            f" {came.channels} and {wanted.channels}"
+            f"[{came.name}] {what} [{expected.name}] do not have the same number of channels:"
+            f" {came.channels} and {expected.channels}"
         )
     return True
 
 
-def _coloured(image: Pixels, came: Encoding, wanted: Encoding) -> Pixels:
+def _coloured(image: Pixels, came: Encoding, expected: Encoding) -> Pixels:
     """Return the image with other channels, as deep as before."""
-    if wanted.colours in _ORDERS:
+    if expected.colours in _ORDERS:
         if came.colours in _ORDERS:
-            return _ordered(image.reshape(*image.shape[:2], came.channels), came.colours, wanted.colours)
+            return _ordered(image.reshape(*image.shape[:2], came.channels), came.colours, expected.colours)
         if came.colours in _YUV:
-            return _by_opencv(image, f"YUV2{_opencvs(wanted.colours)}_{_YUV[came.colours]}", came, wanted)
-        if "a" not in wanted.colours:
+            return _by_opencv(image, f"YUV2{_opencvs(expected.colours)}_{_YUV[came.colours]}", came, expected)
+        if "a" not in expected.colours:
             pattern = _BAYER[came.colours.removeprefix("bayer_")]
-            return _by_opencv(image, f"Bayer{pattern}2{_opencvs(wanted.colours)}", came, wanted)
-    raise ImageError(f"Unsupported conversion from [{came.name}] to [{wanted.name}]")
+            return _by_opencv(image, f"Bayer{pattern}2{_opencvs(expected.colours)}", came, expected)
+    raise ImageError(f"Unsupported conversion from [{came.name}] to [{expected.name}]")
 
 
 def _opencvs(colours: str) -> str:
     return "GRAY" if colours == "mono" else colours.upper()
 
 
-def _by_opencv(image: Pixels, code: str, came: Encoding, wanted: Encoding) -> Pixels:
-    cv2 = opencv(f"{came.name} to {wanted.name}")
-    what = f"convert {image.shape[1]} x {image.shape[0]} pixels from {came.name} to {wanted.name}"
+def _by_opencv(image: Pixels, code: str, came: Encoding, expected: Encoding) -> Pixels:
+    cv2 = opencv(f"{came.name} to {expected.name}")
+    what = f"convert {image.shape[1]} x {image.shape[0]} pixels from {came.name} to {expected.name}"
     converted: Pixels = call(what, cv2.cvtColor, np.ascontiguousarray(image), getattr(cv2, f"COLOR_{code}"))
     return converted
 
 
-def _ordered(image: Pixels, came: str, wanted: str) -> Pixels:
-    if wanted == "mono":
+def _ordered(image: Pixels, came: str, expected: str) -> Pixels:
+    if expected == "mono":
         return _grey(image, came)
-    made = np.empty((*image.shape[:2], len(wanted)), image.dtype)
-    for place, colour in enumerate(wanted):
+    made = np.empty((*image.shape[:2], len(expected)), image.dtype)
+    for place, colour in enumerate(expected):
         if came == "mono":
             made[..., place] = image[..., 0]
         elif colour in came:
@@ -118,14 +118,14 @@ def _grey(image: Pixels, came: str) -> Pixels:
     return grey
 
 
-def _deep(image: Pixels, came: Encoding, wanted: Encoding) -> Pixels:
+def _deep(image: Pixels, came: Encoding, expected: Encoding) -> Pixels:
     """Return the image with values of another type: scaled between 8 and 16 bits, else rounded and cut to its range."""
-    if came.depth == wanted.depth:
+    if came.depth == expected.depth:
         return image
-    kind = wanted.dtype
-    if {came.bits, wanted.bits} == {8, 16}:
+    kind = expected.dtype
+    if {came.bits, expected.bits} == {8, 16}:
         values = image.astype(np.int32)
-        return _cut(values * _SCALE if wanted.bits == 16 else (values + _SCALE // 2) // _SCALE, kind)
+        return _cut(values * _SCALE if expected.bits == 16 else (values + _SCALE // 2) // _SCALE, kind)
     if kind.kind == "f":
         with np.errstate(over="ignore", invalid="ignore"):
             return image.astype(kind)

@@ -73,7 +73,7 @@ def _unloadable(purpose: str, error: Exception) -> ImageError:
 
 
 def call(purpose: str, function: Callable[..., Any], *args: Any) -> Any:
-    """Return what a function of OpenCV returns. Raises ImageError, in one line, for what it refuses.
+    """Return the result of a function of OpenCV. Raises ImageError, in one line, for what it refuses.
 
     Args:
         purpose: What is done, as the end of a sentence: "decode the image".

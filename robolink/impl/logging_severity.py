@@ -19,7 +19,7 @@ class LoggingSeverity(IntEnum):
 
 
 class LoggingSeverityError(RobolinkError, RuntimeError):
-    """A text is no log severity."""
+    """A text is not a log severity."""
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:

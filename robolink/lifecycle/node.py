@@ -65,9 +65,9 @@ class Communication:
             self._events.publish(event)
 
     def _change_state(self, request: Any, response: Any) -> Any:
-        wanted = request.transition
+        expected = request.transition
         try:
-            number = self._machine.get_transition_by_label(wanted.label) if wanted.label else wanted.id
+            number = self._machine.get_transition_by_label(expected.label) if expected.label else expected.id
         except TransitionError as error:
             self._node.get_logger().warning(str(error))
             return response
@@ -172,7 +172,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return self._change_state_(SHUTDOWNS[state_id])
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Register `entity` for the transitions to come. Raises TypeError if it is no ManagedEntity."""
+        """Register `entity` for the transitions to come. Raises TypeError if it is not a ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError(f"expected a ManagedEntity, got {entity!r}")
         self._managed_entities[entity] = None

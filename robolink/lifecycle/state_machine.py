@@ -156,17 +156,17 @@ class LifecycleStateMachine:
         """Make a transition (`label`), and call `on_step` if `publish`. Raises TransitionError if there is none."""
         self._make(label, "label", publish)
 
-    def _make(self, wanted: int | str, field: str, publish: bool) -> None:
+    def _make(self, expected: int | str, field: str, publish: bool) -> None:
         with self._lock:
-            step = self._find(wanted, field)
+            step = self._find(expected, field)
             self._state = step.goal_id
         if publish:
             self.on_step(step)
 
-    def _find(self, wanted: int | str, field: str) -> Step:
+    def _find(self, expected: int | str, field: str) -> Step:
         steps = self.available_transitions
         for step in steps:
-            if getattr(step, field) == wanted:
+            if getattr(step, field) == expected:
                 return step
         there = ", ".join(f"{each.label} [{each.id}]" for each in steps) or "none"
-        raise TransitionError(f"no transition '{wanted}' from {STATES[self._state]}: there is {there}")
+        raise TransitionError(f"no transition '{expected}' from {STATES[self._state]}: there is {there}")

@@ -104,7 +104,7 @@ def _first_value(
     if override is not None:
         return as_declared(override, descriptor)
     if isinstance(value, ParameterValue):
-        raise ValueError(f"parameter '{name}': a ParameterValue is no default value, and no override is given")
+        raise ValueError(f"parameter '{name}': a ParameterValue is not a default value, and no override is given")
     return Parameter(name) if isinstance(value, Type) else _parameter(name, value)
 
 
@@ -177,7 +177,7 @@ def first_fitting(
 
 
 def _unsendable(parameter: Parameter[Any]) -> str:
-    """Return the reason why a parameter cannot be sent, or '': a number too great, or text that is no Unicode."""
+    """Return the reason why a parameter cannot be sent, or '': a number too great, or text that is not Unicode."""
     try:
         encode(parameter.to_parameter_msg())
     except EncodeError as error:

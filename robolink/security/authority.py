@@ -47,7 +47,7 @@ def make_certificate(name: str, issuer: Pair, days: float = DAYS) -> Pair:
         issuer: Authority that signs it.
         days: Days from now on for which it is valid; a negative number makes one that has ended.
 
-    Raises SecurityError for a name that is too long, and for days that are no such number.
+    Raises SecurityError for a name that is too long, and for days that are not a possible number.
     """
     _needed()
     if len(name) > LONGEST_NAME:
@@ -115,7 +115,7 @@ def _private_key(pair: Pair) -> Any:
     try:
         return serialization.load_pem_private_key(pair.key, None)
     except (ValueError, TypeError):
-        raise SecurityError("the authority's key is no private key in PEM, or has a password") from None
+        raise SecurityError("the authority's key is not a private key in PEM, or has a password") from None
 
 
 def _certificate_of(text: bytes) -> Any:

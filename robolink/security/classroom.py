@@ -97,7 +97,7 @@ def rules(name: str, topics: Class, *, may_drive: bool) -> list[Rule]:
 def give_turn(folder: Path, name: str, topics: Class) -> list[Path]:
     """Let one student drive, and no other; an empty `name` is for none. Returns the folders to hand out again.
 
-    Who has been withdrawn stays so, and enclaves that are no student's keep their permissions.
+    Who has been withdrawn stays so, and enclaves that belong to no student keep their permissions.
 
     Args:
         folder: Folder of the class.
@@ -106,15 +106,15 @@ def give_turn(folder: Path, name: str, topics: Class) -> list[Path]:
     """
     store = Keystore(folder / "keys", domain_of(folder, 0))
     there = [each for each in store.names() if re.fullmatch(r"/student[0-9]+", each)]
-    wished = student(int(name)) if name.isdigit() else name
-    if wished and wished not in there:
+    requested = student(int(name)) if name.isdigit() else name
+    if requested and requested not in there:
         raise SecurityError(f"there is no student '{name}' in {store.path}: they are {', '.join(there[:5])} ...")
-    if wished and store.is_withdrawn(wished):
-        raise SecurityError(f"'{wished}' has been withdrawn: 'robolink security create_permission' lets it in again")
+    if requested and store.is_withdrawn(requested):
+        raise SecurityError(f"'{requested}' has been withdrawn: 'robolink security create_permission' lets it in again")
     for each in there:
         if store.is_withdrawn(each):
             continue
-        store.permit(each, rules(each, topics, may_drive=each == wished))
+        store.permit(each, rules(each, topics, may_drive=each == requested))
     return hand_out(folder, store, store.names())
 
 

@@ -94,7 +94,7 @@ def read(path: Path) -> bytes:
 
 
 def exposure(path: Path) -> str:
-    """Return who else may read or change a key, and what to do; '' where nobody may. Windows cannot say."""
+    """Return the others who may read or change a key, and the remedy; '' where nobody may. Windows cannot say."""
     if sys.platform == "win32":
         return ""
     try:

@@ -14,7 +14,7 @@ _NAME = re.compile(rf"(?:/(?:{CHUNK}|\*))*/(?:{CHUNK}\*?|\*)")
 
 
 def problem(pattern: str) -> str:
-    """Return what is wrong with a pattern; '' if nothing is."""
+    """Return the error of a pattern; '' if there is none."""
     if len(pattern) > 255:
         return f"a name has at most 255 letters, this one has {len(pattern)}"
     if _NAME.fullmatch(pattern):

@@ -136,7 +136,7 @@ def _dds(rule: Rule) -> list[tuple[str, str]]:
 
 
 def load(path: Path) -> list[Permission]:
-    """Read a permissions.xml; raises DocumentError for what is no such file, or names that robolink cannot read."""
+    """Read a permissions.xml; raises DocumentError for what is not such a file, or names that robolink cannot read."""
     root = read(path)
     if root.tag != "dds":
         raise root.mistake(f"expected <dds>, got <{root.tag}>")

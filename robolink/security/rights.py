@@ -63,12 +63,12 @@ class Rights:
     def refusal(self, kind: str, key: str) -> str:
         """Return why a right is not there, with enclave, name and rule; '' if it is. Arguments as for `allows`."""
         name = _name(key, self.domain)
-        asked = f"enclave '{self.enclave}' may not {VERBS[kind]} {name or key}"
+        requested = f"enclave '{self.enclave}' may not {VERBS[kind]} {name or key}"
         if not name:
-            return f"{asked}: it is of another domain than {self.domain}"
+            return f"{requested}: it is of another domain than {self.domain}"
         for each in self.denied:
             if each.kind == kind and fits(each.name, name):
-                return f"{asked}: '{each.name}' is denied ({each.place})"
+                return f"{requested}: '{each.name}' is denied ({each.place})"
         if any(each.kind == kind and fits(each.name, name) for each in self.allowed):
             return ""
         domain = f" in domain {self.domain}" if self.domain or self._made_for else ""
@@ -77,7 +77,7 @@ class Rights:
                 f", its permissions were made for domain {self._made_for}: go there, "
                 f"or make them anew with ROS_DOMAIN_ID={self.domain}"
             )
-        return f"{asked}: no rule allows it{domain} ({self.source})"
+        return f"{requested}: no rule allows it{domain} ({self.source})"
 
     def require(self, kind: str, key: str) -> None:
         """Raise SecurityError if a right is not there. Arguments as for `allows`."""

@@ -134,7 +134,7 @@ def read(security: Security) -> Security:
 
 
 def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
-    """Return what differs as soon as permissions or keys count otherwise.
+    """Return a value that differs as soon as permissions or keys count otherwise.
 
     These are names, times and sizes of the files of permissions and of the own key, certificate and authority, and
     for each enclave how many times have come at which permissions begin or end.

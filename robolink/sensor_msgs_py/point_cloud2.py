@@ -263,12 +263,12 @@ def _values(fields: Iterable[PointField]) -> Iterable[tuple[str, str, int]]:
 def _selected(points: np.ndarray[Any, Any], field_names: Iterable[str] | None) -> np.ndarray[Any, Any]:
     if field_names is None:
         return points
-    wanted, known = list(field_names), points.dtype.names or ()
-    missing = [name for name in wanted if name not in known]
+    expected, known = list(field_names), points.dtype.names or ()
+    missing = [name for name in expected if name not in known]
     if missing:
         raise PointCloudError(f"the cloud has no field {', '.join(missing)}; it has {', '.join(known) or 'none'}")
     try:
-        return points[wanted]
+        return points[expected]
     except (KeyError, ValueError) as error:  # one name twice
         raise PointCloudError(f"the fields asked for: {error}") from None
 

@@ -45,9 +45,9 @@ class Buffer(BufferCore, BufferInterface):
         self._watch(self.clock)
         self.jump_handle = self._watched[self.clock]
         if node is not None:
-            self.srv = node.create_service(FrameGraph, "tf2_frames", self._on_frames_asked)
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._on_frames_requested)
 
-    def _on_frames_asked(self, request: FrameGraph.Request, response: FrameGraph.Response) -> FrameGraph.Response:
+    def _on_frames_requested(self, request: FrameGraph.Request, response: FrameGraph.Response) -> FrameGraph.Response:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
@@ -147,9 +147,9 @@ class Buffer(BufferCore, BufferInterface):
             ExternalShutdownException: if the context ends during the wait.
             TypeError: if a time or `timeout` is of another type.
         """
-        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        self._wait(self._full(*asked), timeout)
-        return self.lookup_transform_full_core(*asked)
+        requested = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        self._wait(self._full(*requested), timeout)
+        return self.lookup_transform_full_core(*requested)
 
     def can_transform(
         self,
@@ -240,8 +240,8 @@ class Buffer(BufferCore, BufferInterface):
         Raises:
             TransformException: if the transform cannot come any more, as when a time is too long ago.
         """
-        asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        return await self.wait_for_transform_full_async(*asked)
+        requested = (target_frame, target_time, source_frame, source_time, fixed_frame)
+        return await self.wait_for_transform_full_async(*requested)
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[TransformStamped]:
         """Return a future of a transform, without waiting.
@@ -273,17 +273,17 @@ class Buffer(BufferCore, BufferInterface):
         """
         return self._waits.future(self._full(target_frame, target_time, source_frame, source_time, fixed_frame))
 
-    def _simple(self, *asked: Any) -> PendingLookup:
+    def _simple(self, *requested: Any) -> PendingLookup:
         return PendingLookup(
-            lambda: self.can_transform_core(*asked),
-            lambda: self._is_gone(*asked),
-            lambda: self.lookup_transform_core(*asked),
+            lambda: self.can_transform_core(*requested),
+            lambda: self._is_gone(*requested),
+            lambda: self.lookup_transform_core(*requested),
         )
 
     def _full(self, target: str, target_time: Any, source: str, source_time: Any, fixed: str) -> PendingLookup:
-        asked = (target, target_time, source, source_time, fixed)
+        requested = (target, target_time, source, source_time, fixed)
         return PendingLookup(
-            lambda: self.can_transform_full_core(*asked),
+            lambda: self.can_transform_full_core(*requested),
             lambda: self._is_gone(target, fixed, target_time) or self._is_gone(fixed, source, source_time),
-            lambda: self.lookup_transform_full_core(*asked),
+            lambda: self.lookup_transform_full_core(*requested),
         )

@@ -73,15 +73,17 @@ class TimeCache:
         return Link(parent, time, one, self._known[at + 1][1], ratio)
 
     def _why_not(self, time: int) -> str:
-        begin, asked = "Lookup would require extrapolation", seconds(time)
+        begin, requested = "Lookup would require extrapolation", seconds(time)
         if not self._stamps:
-            return f"{begin} at time {asked}, but no data is in the buffer"
+            return f"{begin} at time {requested}, but no data is in the buffer"
         first, last = self._stamps[0], self._stamps[-1]
         if first == last:
-            return f"{begin} at time {asked}, but only time {seconds(first)} is in the buffer"
+            return f"{begin} at time {requested}, but only time {seconds(first)} is in the buffer"
         if time > last:
-            return f"{begin} into the future.  Requested time {asked} but the latest data is at time {seconds(last)}"
-        return f"{begin} into the past.  Requested time {asked} but the earliest data is at time {seconds(first)}"
+            return (
+                f"{begin} into the future.  Requested time {requested} but the latest data is at time {seconds(last)}"
+            )
+        return f"{begin} into the past.  Requested time {requested} but the earliest data is at time {seconds(first)}"
 
     def parent_near(self, time: int) -> str | None:
         """Return the parent at a time, or at the nearest time that is known; None after `clear`."""

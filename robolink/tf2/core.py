@@ -100,9 +100,9 @@ class BufferCore:
             if len(self._refused) < MOST_COMPLAINTS:
                 self._refused[what, child] = count
         if math.log10(count).is_integer():
-            told = f"{count} of them so far" if count > 1 else "the next ones are only counted"
+            reported = f"{count} of them so far" if count > 1 else "the next ones are only counted"
             get_logger(LOGGER).warning(
-                f"{what}: ignored the transform from '{parent}' to '{child}' of '{authority}': {why} ({told})"
+                f"{what}: ignored the transform from '{parent}' to '{child}' of '{authority}': {why} ({reported})"
             )
 
     def clear(self) -> None:
@@ -278,7 +278,7 @@ class BufferCore:
         latest = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
         frames = tracking_frame, observation_frame, reference_frame, reference_point_frame
         spans = nanoseconds(time), nanoseconds(averaging_interval, "a duration"), latest
-        return velocity_of(lambda *asked: self._lookup(*asked)[0], frames, reference_point, spans)
+        return velocity_of(lambda *requested: self._lookup(*requested)[0], frames, reference_point, spans)
 
     # All of it
 

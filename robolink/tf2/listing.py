@@ -13,7 +13,7 @@ AT_ONCE = 100_000
 """Lower bound of the time span of which a rate is computed, in ns, as tf2 has it."""
 
 NOT_TEXT = frozenset(["y", "n", "yes", "no", "true", "false", "on", "off", "null"])
-"""Words that are no text in YAML."""
+"""Words that are not a text in YAML."""
 
 Caches = Mapping[str, "TimeCache | StaticCache | None"]
 

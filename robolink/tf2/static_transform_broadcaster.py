@@ -30,7 +30,7 @@ class StaticTransformBroadcaster:
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name
         """Publish `transform`, one or several; it replaces an earlier one of the same child frame."""
-        kept = {each.child_frame_id: each for each in self.net_message.transforms}
-        kept.update({each.child_frame_id: deepcopy(each) for each in as_list(transform)})
-        self.net_message.transforms = list(kept.values())
+        retained = {each.child_frame_id: each for each in self.net_message.transforms}
+        retained.update({each.child_frame_id: deepcopy(each) for each in as_list(transform)})
+        self.net_message.transforms = list(retained.values())
         self.pub_tf.publish(self.net_message)

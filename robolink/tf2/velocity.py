@@ -43,8 +43,8 @@ def velocity_of(lookup: Lookup, frames: Sequence[str], point: Sequence[float], s
     if axes is not None:
         linear, angular = _turned(axes, linear), _turned(axes, angular)
     origin = lookup(reference, tracking, time)[:3]
-    wanted = compose(lookup(reference, point_frame, time), (*_vector(point), 0.0, 0.0, 0.0, 1.0))[:3]
-    arm = _vector([w - o for w, o in zip(wanted, origin, strict=True)])
+    expected = compose(lookup(reference, point_frame, time), (*_vector(point), 0.0, 0.0, 0.0, 1.0))[:3]
+    arm = _vector([w - o for w, o in zip(expected, origin, strict=True)])
     return _vector([v + c for v, c in zip(linear, _cross(angular, arm), strict=True)]), angular
 
 

@@ -48,16 +48,16 @@ class Waits:
         self.sources: weakref.WeakSet[Source] = weakref.WeakSet()
         """Listeners that feed the buffer; each has a `node`."""
         self._came = threading.Condition()
-        self._asked: list[tuple[PendingLookup, Future[TransformStamped]]] = []
+        self._requested: list[tuple[PendingLookup, Future[TransformStamped]]] = []
         self._hinted = False
 
     def notify(self) -> None:
         """Notify all waits that a transform has come."""
         with self._came:
             self._came.notify_all()
-        for asked in list(self._asked):
-            if asked[0].settled():
-                self._answer(*asked)
+        for requested in list(self._requested):
+            if requested[0].settled():
+                self._answer(*requested)
 
     # In a callback, or outside of any
 
@@ -107,11 +107,11 @@ class Waits:
     def future(self, lookup: PendingLookup) -> Future[TransformStamped]:
         """Return a future that gets the transform, or the exception once it cannot come any more."""
         future: Future[TransformStamped] = Future()
-        asked = (lookup, future)
-        self._asked.append(asked)
-        future.add_done_callback(lambda _: self._forget(asked))
+        requested = (lookup, future)
+        self._requested.append(requested)
+        future.add_done_callback(lambda _: self._forget(requested))
         if lookup.settled():
-            self._answer(*asked)
+            self._answer(*requested)
         return future
 
     def _answer(self, lookup: PendingLookup, future: Future[TransformStamped]) -> None:
@@ -124,11 +124,11 @@ class Waits:
         else:
             future.set_result(found)
 
-    def _forget(self, asked: tuple[PendingLookup, Future[TransformStamped]]) -> bool:
+    def _forget(self, requested: tuple[PendingLookup, Future[TransformStamped]]) -> bool:
         with self._came:
-            for at, each in enumerate(self._asked):
-                if each[1] is asked[1]:
-                    del self._asked[at]
+            for at, each in enumerate(self._requested):
+                if each[1] is requested[1]:
+                    del self._requested[at]
                     return True
         return False
 

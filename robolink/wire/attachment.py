@@ -86,7 +86,7 @@ def pair_opener(decode: Callable[[bytes], Any]) -> Callable[[tuple[bytes, bytes]
 
 
 gid_in: Callable[[bytes], bytes] = operator.itemgetter(slice(_GID_LENGTH_AT + 1, _LENGTH))
-"""Return the sender's gid in an attachment; of other bytes something that is no sender's. In C, for hot paths."""
+"""Return the sender's gid in an attachment; of other bytes something that is not a sender's. In C, for hot paths."""
 
 
 def unpack_attachment(raw: bytes) -> Attachment:

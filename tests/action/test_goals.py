@@ -64,7 +64,7 @@ def test_a_goal_callback_that_answers_nonsense_rejects(
 ) -> None:
     serve(goal_callback=lambda _: True)
     assert not done(executor, client.send_goal_async(Fibonacci.Goal())).accepted
-    assert "goal callback returned True, which is no GoalResponse" in log_lines[-1].message
+    assert "goal callback returned True, which is not a GoalResponse" in log_lines[-1].message
 
 
 def test_callbacks_may_be_coroutines(

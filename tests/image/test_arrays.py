@@ -196,5 +196,5 @@ def test_a_compressed_image() -> None:
     came = sent(CompressedImage(format="png", data=data))
     assert to_array(came, "rgb8")[0, 0].tolist() == [255, 0, 0]
     assert_array_equal(to_array(came), RED)
-    with pytest.raises(ImageError, match="are no JPEG, PNG or other picture"):
+    with pytest.raises(ImageError, match="are not a JPEG, PNG or other picture"):
         to_array(CompressedImage(data=b"no picture"))

@@ -138,7 +138,7 @@ def test_a_name_alone_is_dynamic_and_warned_about_where_it_stands(make: Make) ->
         (("x", Type.NOT_SET), ValueError, "'x' has neither value nor type"),
         (("x", Type.DOUBLE, ParameterDescriptor(dynamic_typing=True)), ValueError, "exclude each other"),
         (("x", ParameterValue()), ValueError, "neither value nor type"),
-        (("x", ParameterValue(type=ParameterType.PARAMETER_BOOL)), ValueError, "ParameterValue is no default"),
+        (("x", ParameterValue(type=ParameterType.PARAMETER_BOOL)), ValueError, "ParameterValue is not a default"),
         (("x", {"a": 1}), TypeError, "parameter 'x': "),
         (("x", [1, 2.0]), TypeError, "parameter 'x': "),
         (("x", 1, ParameterValue()), TypeError, "'x': expected a ParameterDescriptor"),
