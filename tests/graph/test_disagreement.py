@@ -10,7 +10,7 @@ import pytest
 
 from robolink import Context, Node, VirtualTime
 from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from robolink.graph.endpoint import MOST_TOLD
+from robolink.graph.endpoint import MOST_REPORTED
 from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
@@ -154,10 +154,10 @@ def test_a_crowd_does_not_drown_the_log(bus: Bus, context: Context, log_lines: l
     token = publisher._endpoint.token._replace(
         kind=EndpointKind.SUBSCRIPTION, session=crowd.session_id, type_name="std_msgs/msg/String"
     )
-    for number in range(3 * MOST_TOLD):
+    for number in range(3 * MOST_REPORTED):
         crowd.announce(format_token(token._replace(endpoint_id=str(number), node_name=f"n{number}")))
     told = warnings(log_lines, "node")
-    assert len(told) == MOST_TOLD
+    assert len(told) == MOST_REPORTED
     assert told[-1].endswith("(no more of these are told)")
     assert publisher.get_subscription_count() == 0
 
