@@ -124,11 +124,12 @@ class Latch(Generic[ItemT]):
         retained = self._retained
         with self.lock:
             if len(retained) == retained.maxlen:
-                self._bytes -= retained.popleft()[1]
+                self._bytes -= retained[0][1]
             retained.append((item, size))
             self._bytes += size
-            while self._bytes > self._most_bytes > 0:
-                self._bytes -= retained.popleft()[1]
+            if self._most_bytes:
+                while self._bytes > self._most_bytes:
+                    self._bytes -= retained.popleft()[1]
 
     def last(self, most: int | None = None) -> list[ItemT]:
         """Return the last samples, oldest first: all that are retained, or `most` of them."""

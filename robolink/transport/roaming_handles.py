@@ -145,7 +145,13 @@ class RoamingOutlet(Declaration):
         if self.cache is not None:
             self.cache.retain((payload, attachment), len(payload))
         if self._latch is None:
-            self._put(payload, attachment)
+            handle = self._handle
+            try:  # `_put` written out: this is run once a message
+                handle.put(payload, attachment)
+            except TransportClosedError:
+                if handle is self._handle:
+                    raise
+                self._put(payload, attachment)
             return
         with self._latch.lock:  # as it is retained so it is sent, and nothing falls between two sessions
             self._latch.retain((payload, attachment))
