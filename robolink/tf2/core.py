@@ -12,9 +12,8 @@ from robolink.logging import get_logger
 from robolink.tf2 import listing
 from robolink.tf2.cache import LATEST
 from robolink.tf2.exceptions import TransformException
-from robolink.tf2.rigid import Rigid, compose, signed
+from robolink.tf2.rigid import Rigid, Velocity, compose, signed, velocity_of
 from robolink.tf2.tree import Tree
-from robolink.tf2.velocity import Velocity, velocity_of
 from robolink.time import Time
 
 CACHE_TIME = 10 * S_TO_NS
