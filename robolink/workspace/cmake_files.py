@@ -44,7 +44,7 @@ class Listing:
         self._known: dict[tuple[str, bool], list[Listed]] = {}
 
     def below(self, at: str, *, is_deep: bool = True) -> Iterator[Listed]:
-        """Yield what is in the folder at a relative path, `at`, by name; with `is_deep` in those inside, too."""
+        """Yield the content of the folder at a relative path, `at`, by name; with `is_deep` in those inside, too."""
         self._left -= 1
         if self._left >= 0:
             key = (str(PurePosixPath(at)), is_deep)
@@ -96,7 +96,7 @@ def _entries_of(folder: Path, is_deep: bool) -> list[Listed]:
 
 
 def _entries(folder: Path, at: str) -> Iterator[Listed]:
-    """Yield what is in a folder, by name; a link to a folder is none, since it may lead back."""
+    """Yield the content of a folder, by name; a link to a folder is none, since it may lead back."""
     try:
         with os.scandir(folder) as entries:
             listed = sorted((each.name, each.is_file()) for each in entries if each.is_file() or not each.is_symlink())

@@ -59,11 +59,11 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     path = _as_path(file, workspace, (".py",))
     if path is not None:
         return NodeSource(path.stem, path, attribute)
-    asked = canonical(file.removesuffix(".py"))
+    requested = canonical(file.removesuffix(".py"))
     for source in _node_sources(workspace):
-        if canonical(source.name) == asked:
+        if canonical(source.name) == requested:
             return NodeSource(source.name, source.path, attribute)
-    added = next((NODES.get(each) for each in NODES.added() if canonical(each) == asked), None)
+    added = next((NODES.get(each) for each in NODES.added() if canonical(each) == requested), None)
     if added is not None:
         return replace(added, attribute=attribute or added.attribute)
     raise _no_node(file, workspace)
@@ -109,8 +109,8 @@ def find_package(name: str, *, workspace: Folder = None) -> Path | None:
         workspace: Folder that serves as the user's workspace; None looks for it.
     """
     known = list_packages(workspace=workspace)
-    asked = canonical(name)
-    return known.get(name) or next((known[each] for each in known if canonical(each) == asked), None)
+    requested = canonical(name)
+    return known.get(name) or next((known[each] for each in known if canonical(each) == requested), None)
 
 
 def list_packages(*, workspace: Folder = None) -> dict[str, Path]:
@@ -219,15 +219,15 @@ def user_workspace(workspace: Folder = None) -> Path | None:
 
     Raises `NotFoundError` if one is named that is not a folder.
     """
-    asked = workspace or os.environ.get(VARIABLE)
-    if not asked:
+    requested = workspace or os.environ.get(VARIABLE)
+    if not requested:
         here = None
         with contextlib.suppress(FileNotFoundError):  # the working directory has been deleted
             here = workspace_of(Path.cwd())
         return here or _sourced_workspace()
-    folder = expanded(asked)
+    folder = expanded(requested)
     if not folder.is_dir():
-        raise NotFoundError("workspace folder", str(asked))
+        raise NotFoundError("workspace folder", str(requested))
     return folder.resolve()
 
 
@@ -312,9 +312,9 @@ def _find_file(kind: str, name: str, inside: str, workspace: Folder, suffixes: t
     path = _as_path(name, workspace, suffixes)
     if path is not None:
         return path
-    asked = canonical(Path(name).stem if Path(name).suffix in suffixes else name)
+    requested = canonical(Path(name).stem if Path(name).suffix in suffixes else name)
     for each in _files_in(inside, workspace, suffixes):
-        if canonical(each.stem) == asked:
+        if canonical(each.stem) == requested:
             return each
     known = [*(each.stem for each in _files_in(inside, workspace, suffixes)), *_file_names(workspace, suffixes)]
     raise _not_found(kind, name, workspace, known)

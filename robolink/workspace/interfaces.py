@@ -39,7 +39,7 @@ class WorkspaceTypes:
     """Registry of the types of workspaces: those that were added, the latest first, the user's, the built-in one.
 
     The user's is looked for anew each time, as `robolink.workspace` does: it is that of the environment, or the
-    nearest. A look-up costs the listing of a few folders; a file is read when its type is first asked for, once.
+    nearest. A look-up costs the listing of a few folders; a file is read when its type is first used, once.
     """
 
     def __init__(self) -> None:

@@ -41,9 +41,9 @@ class NodeLoadError(RobolinkError, ImportError):
 
 
 def load_node(source: NodeSource, *, script: ScriptMaker | None = None) -> Runnable:
-    """Return what runs a node: a subclass of `Node` to construct and spin, or a function to call.
+    """Return the runnable of a node: a subclass of `Node` to construct and spin, or a function to call.
 
-    The content of a file is decided in this order: the attribute asked for; a script, with a `__main__` guard or with
+    The content of a file is decided in this order: the requested attribute; a script, with a `__main__` guard or with
     statements that run a node as the file is read, which is run as Python runs it; a function `main`; its only Node
     class; a script without any of these, which is run too, whatever other classes it has.
 
@@ -176,7 +176,7 @@ def _parse(path: Path) -> ast.Module:
 
 
 def _is_script(tree: ast.Module) -> bool:
-    """True if a file is run as Python runs it, not asked for what it defines."""
+    """True if a file is run as Python runs it, and not read for its definitions."""
     if _has_guard(tree) or _acts(tree):
         return True
     if _defines(tree, "FunctionDef", "main"):
@@ -352,7 +352,7 @@ def _own_nodes(module: ModuleType) -> list[type[Node]]:
 
 
 def _lack(module: ModuleType) -> str:
-    """Return what a module without a node lacks; a class that is none has often only lost its `(Node)`."""
+    """Return the lack of a module without a node; a class that is none has often only lost its `(Node)`."""
     values = list(vars(module).items())
     plain = [name for name, value in values if type(value) is type and value.__module__ == module.__name__]
     if len(plain) == 1 and any(name == "Node" and isinstance(value, type) for name, value in values):
@@ -398,7 +398,7 @@ def check_needs_nothing(found: Callable[[], Any]) -> None:
 
 
 def _without_init(found: type) -> str:
-    """Return what is wrong with a class that has no `__init__` of its own: perhaps a name that is nearly that."""
+    """Return the fault of a class that has no `__init__` of its own: perhaps a name that is nearly that."""
     near = next((each for each in vars(found) if each.strip("_") in ("init", "int") and each != "__init__"), "")
     meant = f": {near} is to be __init__, with two _ on each side" if near else ", which gives the node its name"
     return f"{found.__name__} has no __init__ of its own{meant}"

@@ -1,4 +1,4 @@
-"""Import finder for modules that are no files, with functions that know names and how each module is made.
+"""Import finder for modules that are not files, with functions that know names and how each module is made.
 
 It also changes modules of others, once they are loaded.
 """
@@ -131,4 +131,4 @@ class Changing:
 
 
 FINDER = ModuleFinder()
-"""The one finder of a process, for all that are no files: a workspace's types, and the names of `robolink.compat`."""
+"""The one finder of a process, for all that are not files: a workspace's types, and the names of `robolink.compat`."""

@@ -26,13 +26,13 @@ BUILT_IN = "robolink"
 DEEPEST = 8
 """Upper bound of the folders between `src/` and a package's own."""
 MOST = 2000
-"""Upper bound of the folders that are searched: a `src/` that has more is no workspace's."""
+"""Upper bound of the folders that are searched: a `src/` that has more is not a workspace's."""
 MOST_BESIDE = 100
 """Upper bound of the folders in which packages are looked for where nothing shows that there are any."""
 PARTS = ("nodes", "configs", "interfaces")
 """Folders of which a workspace of robolink's own has two."""
 IGNORE = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
-"""Names of the marker files of folders that are no packages."""
+"""Names of the marker files of folders that are not packages."""
 _NO_MODULES = ("launch", "test", "tests", "scripts")
 """Folders of modules that no other package imports by these names."""
 _NO_PACKAGES = ("build", "install", "log", "node_modules", "__pycache__")
@@ -139,8 +139,8 @@ def executable(folder: Path, name: str) -> NodeSource | None:
 
 def named(name: str, known: Mapping[str, NodeSource]) -> NodeSource | None:
     """Return that of the `known` executables which is called `name`, with or without .py; None if there is none."""
-    asked = canonical(name.removesuffix(".py"))
-    found = (known[each] for each in known if canonical(each.removesuffix(".py")) == asked)
+    requested = canonical(name.removesuffix(".py"))
+    found = (known[each] for each in known if canonical(each.removesuffix(".py")) == requested)
     return known.get(name) or next(found, None)
 
 

@@ -120,7 +120,7 @@ PACKAGES = {
 
 
 class RosProgramError(NotFoundError):
-    """The `program` of a `package` was asked for, which robolink lacks; the text has the `advice`."""
+    """The `program` of a `package` was requested, which robolink lacks; the text has the `advice`."""
 
     def __init__(self, package: str, program: str, advice: str) -> None:
         self.kind, self.name = "package", package
@@ -136,7 +136,7 @@ class CompiledProgramError(RosProgramError):
 
 
 def instead_of(package: str, program: str = "") -> str | None:
-    """Return what a program of a well-known package is and what serves instead; None for an unknown package.
+    """Return the nature of a program of a well-known package and the replacement for it; None for an unknown package.
 
     >>> instead_of("gazebo_ros", "gzclient")
     "Gazebo's window; 'robolink view' shows the world in the browser instead"

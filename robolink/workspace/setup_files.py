@@ -110,7 +110,7 @@ class Values:
 
 
 def _assignments(tree: ast.Module) -> dict[str, list[ast.expr]]:
-    """Return what a module's names are assigned; after it the lists that are added to them."""
+    """Return the values that a module's names are assigned; after them the lists that are added to them."""
     found: dict[str, list[ast.expr]] = {}
     for each in tree.body:
         match each:

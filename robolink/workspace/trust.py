@@ -65,7 +65,7 @@ def _objections(folder: Path, trusted: Collection[int]) -> Iterator[str]:
 
 
 def _objections_to(folder: Path, trusted: Collection[int], *, is_above: bool) -> Iterator[str]:
-    """Yield what is wrong with one folder. What stands in a sticky one, as /tmp, is only its owner's to replace."""
+    """Yield the faults of one folder. What stands in a sticky one, as /tmp, is only its owner's to replace."""
     try:
         found = folder.stat()
     except OSError:  # a part that is not there

@@ -61,12 +61,12 @@ class Shapes:
 
 
 def walls_of(simulation: Simulation) -> MarkerArray:
-    """Return what stands in a simulated world, as markers."""
+    """Return the markers of things that stand in a simulated world."""
     return MarkerArray(markers=list(standing(simulation.world)))
 
 
 def objects_of(simulation: Simulation) -> MarkerArray:
-    """Return what moves, is pushed or drives in a simulated world, as markers that replace those of before."""
+    """Return the markers of things that move, are pushed or drive in a world, which replace those of before."""
     world = simulation.world
     return MarkerArray(markers=[Marker(action=Marker.DELETEALL), *moving(world), *outlines(world, _frames(simulation))])
 

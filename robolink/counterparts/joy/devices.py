@@ -107,7 +107,7 @@ def name_of(file: int) -> str:
 
 
 def _answer(file: int, request: int, kind: str, count: int) -> array.array[int]:
-    """Return what a device answers to a request; zeros for one that is not a gamepad."""
+    """Return the answer of a device to a request; zeros for one that is not a gamepad."""
     answer = array.array(kind, bytes(array.array(kind).itemsize * count))
     if sys.platform == "linux":
         import fcntl

@@ -329,7 +329,7 @@ def _as_number(element: Element, attribute: str, text: str) -> float:
 
 
 def _odd_mimics(joints: dict[str, Joint], places: dict[str, Element]) -> Iterator[DocumentError]:
-    """Yield what is wrong with joints that follow ones which are not there, or each other in a circle.
+    """Yield the faults of joints that follow ones which are not there, or each other in a circle.
 
     ROS's parser takes them: such a joint moves only where its own position is given.
     """

@@ -139,7 +139,7 @@ def _truth(value: Any) -> Any:
 
 
 def _doubts(document: yamlfile.Document[dict[str, Any]], file: MapFile) -> Iterator[DocumentError]:
-    """Yield what nav2 loads without a word."""
+    """Yield the faults that nav2 loads without a word."""
     for key in ("occupied_thresh", "free_thresh"):
         if not 0.0 <= getattr(file, key) <= 1.0:
             yield document.error([key], f"{getattr(file, key):g} is not a share from 0 to 1")

@@ -39,7 +39,7 @@ _Read: TypeAlias = Callable[[str], Picture]
 
 
 def scenery(description: WorldDescription) -> Scenery:
-    """Return what can be seen of a world.
+    """Return the surfaces of a world that can be seen.
 
     Args:
         description: The world, as from `load_world`.

@@ -45,7 +45,7 @@ def sign_surfaces(sign: Sign, read: Callable[[str], Picture], fixed: Surfaces | 
 
 
 def _plate(sign: Sign, read: Callable[[str], Picture]) -> tuple[Picture, float, float]:
-    """Return what is on a sign, and its width and height in metres."""
+    """Return the picture on a sign, and its width and height in metres."""
     if sign.tag is not None:
         tag = tag_of(sign.tag)
         side = plate_size(tag, sign.size)

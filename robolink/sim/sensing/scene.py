@@ -237,7 +237,7 @@ class Sights:
         self._settings.clear()
 
     def setting(self, viewer: int, things: Iterable[tuple[int, RobotDescription | int | None]]) -> Setting:
-        """Return what a viewer sees, made once.
+        """Return the surfaces that a viewer sees, made once.
 
         Args:
             viewer: Number of the viewer.
