@@ -41,7 +41,6 @@ def _parameters(**values: str) -> tuple[str, ...]:
     return ("--ros-args", *words)
 
 
-_STRINGS = _parameters(input_topic="/chatter", output_topic="/out", input_type="std_msgs/msg/String")
 ARGUMENTS: dict[str, tuple[str, ...]] = {
     "robot_state_publisher robot_state_publisher": _parameters(robot_description=ARM),
     "joint_state_publisher joint_state_publisher": _parameters(source_list="[/more_joints]"),
