@@ -28,6 +28,7 @@ def test_a_turtle_follows_another(system: System) -> None:
     assert 0.5 < distance(system) < 2.1
 
 
+@pytest.mark.slow
 def test_without_turtlesim_it_waits(system: System) -> None:
     system.start("turtle_tf2_py turtle_tf2_listener", parameters={"target_frame": "turtle3"})
     system.expect_log("Service is not ready")

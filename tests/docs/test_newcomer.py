@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.domains import free_domain
 from tools import newcomer
-from tools.newcomer import Newcomer, Step, told, until_it_moves, waiting
+from tools.newcomer import Newcomer, Step, reported, until_it_moves, waiting
 
 LOG = """\
 2026-11-26T14:27:20,000 Processing ./robolink-0.2.0-py3-none-any.whl
@@ -65,7 +65,7 @@ def test_packages_are_told_apart_and_what_comes_after_the_robot_moves_does_not_c
         Step(9.0, "doctor"),
     ]
     assert until_it_moves(steps) == (25.0, 20.0)
-    *_, last = told("cold", steps).splitlines()
+    *_, last = reported("cold", steps).splitlines()
     assert last == "  25.0 s  from the empty folder until the robot moves, 20.0 s of them waiting for packages"
     with pytest.raises(AssertionError, match="moves no robot"):
         until_it_moves(steps[:2])

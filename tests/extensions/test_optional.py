@@ -42,6 +42,7 @@ def test_a_command_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[s
     assert "\n  view " not in listed
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("without")
 def test_what_needs_a_page_says_that_there_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(MissingPartError, match="'robolink view' is not part"):

@@ -90,6 +90,7 @@ def emptied(description: Any) -> None:
 HOSTILE = [(change, humble) for change in (cyclic, code, huge, another, emptied) for humble in (False, True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "humble"), [(renamed, False), *HOSTILE])
 def test_a_hostile_description_is_an_error_of_one_line(
     robot: Node, looker: Context, change: Callable[[Any], Any], humble: bool

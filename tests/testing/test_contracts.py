@@ -33,6 +33,7 @@ HIDDEN = {name for name, entry in NOUNS.items() if entry.hidden}
 """Commands that robolink itself starts."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("group", "name"), [each for each in OWN if each[1] not in HIDDEN])
 def test_what_comes_with_robolink_keeps_its_contract(group: str, name: str) -> None:
     CHECKS[group](name)

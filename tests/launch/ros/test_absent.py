@@ -50,6 +50,7 @@ def body(actions: str, before: str = IMPORT) -> str:
     return f"{head}def generate_launch_description():\n    return LaunchDescription([{actions}\n    ])\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("action", WITH)
 def test_an_action_of_it_is_left_out_and_the_rest_runs(package: Path, action: str) -> None:
     system = read(package, body(f"{action}\n        Node(package='bot', executable='talker', name='last'),"))
