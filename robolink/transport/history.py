@@ -36,7 +36,7 @@ def _nothing() -> None:
 
 
 class Mailbox:
-    """What one receiver stores until its turn comes: the last `depth`, or ALL. The oldest is dropped, and counted.
+    """Store of one receiver until its turn comes: the last `depth`, or ALL. The oldest is dropped, and counted.
 
     Args:
         depth: Largest number of items that wait; ALL is any number.
@@ -56,7 +56,7 @@ class Mailbox:
     ) -> None:
         self.depth = depth
         self.waiting: deque[Any] = deque(maxlen=depth or None)
-        """What waits, oldest first: a bare deque, so that a network may append to it without Python code."""
+        """Samples that wait, oldest first: a bare deque, so that a network may append to it without Python code."""
         self.dropped = 0
         """Number of items that gave way to newer ones."""
         self.listed = False
@@ -104,7 +104,7 @@ def _preparing(prepare: Callable[[Any], Any], put: Callable[[Any], None]) -> Cal
 
 
 class Latch(Generic[ItemT]):
-    """What a publisher retains for whoever comes late, or has lost it: its last samples, in order.
+    """Samples that a publisher retains for whoever comes late, or has lost some: its last, in order.
 
     Args:
         depth: Largest number of samples.
