@@ -138,7 +138,10 @@ def test_the_glossary_leads_from_usual_terms_to_files() -> None:
     assert {"deadlock", "scheduler", "mailbox", "control socket"} <= {term for term, _ in TERMS}
 
 
-PARTS = ("Context", "Choice", "Cost", "To reverse")
+DATE = re.compile(r"[^\n]+\n\n20\d\d-\d\d-\d\d(?:, reversed on 20\d\d-\d\d-\d\d)?\. ")
+"""How a decision begins: its heading, and the paragraph that opens with its date."""
+
+LABELS = re.compile(r"(?:Cost|Back):")
 
 
 def decisions() -> list[tuple[int, str]]:
@@ -150,13 +153,15 @@ def decisions() -> list[tuple[int, str]]:
     return sorted((int(number), text) for number, text in found)
 
 
-def test_decisions_have_numbers_without_a_gap_and_all_their_parts() -> None:
+def test_decisions_have_numbers_without_a_gap_a_date_and_a_place() -> None:
     numbered = decisions()
     assert [number for number, _ in numbered] == list(range(1, len(numbered) + 1))
     assert len(numbered) > 80
     for number, text in numbered:
-        assert re.search(r"^20\d\d-\d\d-\d\d", text, re.MULTILINE), f"decision {number} has no date"
-        assert re.findall(r"^- \*\*(.*?):\*\*", text, re.MULTILINE) == list(PARTS), f"decision {number}"
+        assert DATE.match(text), f"decision {number} does not begin with its date"
+        assert places(text), f"decision {number} names no place"
+        found = re.findall(r"\*([A-Z][^*]*)\*", text)
+        assert all(LABELS.fullmatch(each) for each in found), f"decision {number} has {found}"
 
 
 def test_every_decisions_page_is_listed() -> None:
