@@ -1,4 +1,23 @@
 // Entry of the page: the connection, what panels share (`app`), header, STOP, shortcuts and the loop of frames.
+//
+// What a panel has of `app`:
+// - listen(topic, {rate, every}): subscribes, also to a topic that comes later and after a lost connection; returns
+//   {topic, close()}. rate in Hz (0: every message); every(view, time, topic) gets each message: topic.decode(view)
+// - topics: Map of name to Topic: type, channel (null while nobody publishes), schema, statistics, latest (decoded
+//   when it is read), view (its bytes: another object for another message), time (ms), ring.between(start, end) (the
+//   last minute, thinned), error
+// - store: on("change"): a topic came or went; on("statistics"): once a second; list(): the topics that are shown
+// - connection: publish(topic, type, message, {stopAfter}), call(service, request) (a promise), service(name),
+//   services, graph, schemaOf(type), record(command), send(operation), isReadOnly, on("services" / "graph" /
+//   "parameters" / "recording" / "status" ...)
+// - time, now, clock(): time.live, or the timeline was dragged to time.at; now is the shown time and clock() that of
+//   what arrives, in milliseconds
+// - tf: lookup(frame): pose in the fixed frame, or null; fixed, names()
+// - words(key, values), tell(text, isError): texts of the page, and notes to the person
+// - on("pick", (topic, path) => ...): a number in the tree of a message was clicked; a drag has text/robolink-field,
+//   JSON {topic, path}
+// - on("stop"), drivable(): the STOP button; topics that drive robots, with their types
+// - on("header", (element) => ...): place for a tool in the header; also emitted when it is built again
 
 import { Connection } from "./connection.js";
 import { button, Emitter, h, isTyping } from "./dom.js";
@@ -20,7 +39,7 @@ try {
 } catch { /* nonsense is forgotten */ }
 choose(settings.language);
 
-/** Everything that a panel may use: see "Add a panel" in docs/development/recipes.md. */
+/** Everything that a panel may use, as the head of this file lists it. */
 class App extends Emitter {
   constructor() {
     super();
