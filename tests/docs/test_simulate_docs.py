@@ -1,4 +1,4 @@
-"""docs/reference/simulate.md names options and keys that are there, and faults fit; test_pages_run.py runs its blocks."""
+"""docs/reference/simulate.md names options and keys that are there, and faults fit; test_pages_run.py runs blocks."""
 
 from __future__ import annotations
 
