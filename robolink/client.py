@@ -152,6 +152,7 @@ class Client(ServiceEnd):
         executor = self.executor
         if executor is None or not executor.spins_here:
             return self._call_from_outside(request, timeout_sec, patient)
+        # rclpy stops here for ever: the only thread waits for an answer that only it could receive.
         with executor.waiting_for(self._only_servers(executor)) as would_wait_for_itself:
             if would_wait_for_itself:
                 raise ServiceError(
@@ -237,6 +238,7 @@ class Client(ServiceEnd):
         """Send a serialized request; `sink` gets what `Transport.read` reads as a response, then None once."""
         return self._transport.call(self._key(), request, self._endpoint.attachment(), sink)
 
+    # Never done, since rclpy's programs call early, spin with a timeout and look.
     def call_async(self, request: Message) -> Future[Any]:
         """Call the service with `request`, and return the future of the response, which comes while something spins.
 

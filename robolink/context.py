@@ -297,7 +297,7 @@ class Context:
         if not callable(callback):
             raise TypeError(f"callback should be a callable, got {type(callback)}")
         if self._initialized and not self._ok:
-            callback()
+            callback()  # as rclpy does: it would never be called any more
             return
         with self._lock:
             held = weakref.WeakMethod(callback) if isinstance(callback, MethodType) else callback

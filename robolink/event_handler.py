@@ -310,6 +310,7 @@ class PublisherEventCallbacks:
             kind.RCL_PUBLISHER_INCOMPATIBLE_TYPE: self.incompatible_type,
             kind.RCL_PUBLISHER_MATCHED: self.matched,
         }
+        # The first never comes: rmw_zenoh, and so this network, connects any two profiles.
         usual = {kind.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, kind.RCL_PUBLISHER_INCOMPATIBLE_TYPE}
         return _handlers(callbacks, usual if self.use_default_callbacks else set(), callback_group, publisher)
 

@@ -885,6 +885,7 @@ class Node(Destroyable):
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """Return all services that are served or called, each with its types."""
+        # Those that are only called too, as rmw_zenoh's graph lists them.
         return names_and_types(self._graph_.endpoints(EndpointKind.SERVICE, EndpointKind.CLIENT))
 
     def get_node_names(self) -> list[str]:

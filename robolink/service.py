@@ -23,7 +23,7 @@ from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
 
 MOST_WAITING = 1000
-"""Most requests that wait for the executor; beyond it the oldest caller is told that there is no answer."""
+"""Most requests that wait for the executor: QoS's depth of 10 is for topics. Beyond it the oldest ends unanswered."""
 
 
 class RequestHeader(NamedTuple):
@@ -93,6 +93,7 @@ class Service(ServiceEnd):
 
     def _speak_humble(self, key: str) -> None:
         """Serve Humble's key too from now on; a client calls one of them."""
+        # At the first Humble node anywhere, not at the first client: that one calls before its token has arrived.
         self._handles.append(self._transport.serve(key, self.sink))
         if self._destroyed:  # meanwhile
             self._close()
@@ -120,6 +121,7 @@ class Service(ServiceEnd):
             self._refuse(str(error))
             return None
         try:
+            # One without ROS 2's attachment is refused, as rmw_zenoh does: what works here works with a real robot.
             asker = unpack_attachment(query.attachment)
             if self.look_first is not None:
                 refusal, reason = self.look_first(query.payload)

@@ -110,9 +110,11 @@ class Subscription(Receiver, Generic[MsgT]):
         self._read_arrived = self._read
         callbacks = event_callbacks or SubscriptionEventCallbacks()
         self._sequence: Sequence | None = None
+        # One without ROS 2's attachment is refused, as rmw_zenoh does: what works here works with a real robot.
         self._check: Callable[[bytes], object] = check_attachment
         if depth and (transport.threaded or callbacks.message_lost):  # others lose nothing on the way
             self._sequence = Sequence(self._make_gaps(), self.mailbox, self._on_gap)
+            # As they are taken; rmw_zenoh counts at arrival and misses what gives way in the mailbox.
             self._check = self._sequence.check
         self._open: Callable[[Any], Any] | None = transport.opener(self._check, self._decode)
         """Function that turns what arrived into a message, the short way; None where `_read` does more."""

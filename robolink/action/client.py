@@ -154,6 +154,7 @@ class ActionClient(Waitable):
         except BaseException:
             self.destroy()
             raise
+        # In virtual time from the client's gid, so that runs repeat.
         self._random = node.context.time.random_ids(self._goal_client._endpoint.gid)
         node.add_waitable(self)
 

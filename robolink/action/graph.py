@@ -33,6 +33,7 @@ def actions(services: NamesAndTypes, topics: NamesAndTypes) -> NamesAndTypes:
     requested, reported = _parts(services), _parts(topics)
     found = []
     for name in sorted(requested.keys() & reported.keys()):
+        # All five: who merely echoes the feedback is not a client, though rcl takes it for one.
         if requested[name].keys() >= SERVICES and reported[name].keys() >= TOPICS:
             types = sorted(each for each in reported[name][FEEDBACK] if each.endswith(FEEDBACK_TYPE))
             found.append((name, [each.removesuffix(FEEDBACK_TYPE) for each in types]))

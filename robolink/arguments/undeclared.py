@@ -37,7 +37,7 @@ class OverriddenNode(Protocol):
 
 
 class GivenParameters:
-    """Parameters of a context's command line that its nodes have not declared so far.
+    """Parameters of a context's command line that its nodes have not declared so far: ROS 2 is silent about a typo.
 
     When nodes begin to spin, it warns only of a name that is nearly that of a parameter which was declared and not
     given: another may still be declared, as by a lifecycle node when it is configured. The rest follows at the end.

@@ -25,7 +25,7 @@ from robolink.system.terminal import quoted, shown
 
 FILE_NAME = "metadata.yaml"
 VERSION = 8
-"""Version that is written."""
+"""Version that is written: 9 has QoS in words, which end Humble's reader; all later ones read 8."""
 OLDEST, NEWEST = 1, 9
 """Versions of the format that are known; a newer one is read as far as it is the same."""
 

@@ -178,9 +178,11 @@ class Bag:
 
     def _describe(self, stored: BagMetadata | None) -> BagMetadata:
         """Return metadata of what there is: sums and counts of the files, the rest from what is stored."""
+        # A killed recorder leaves a metadata.yaml that is older than its files, or none.
         copies = [each.stored for each in self._files if each.stored is not None]
         known = stored or (copies[-1] if copies else BagMetadata(version=0))
         total = sum(each.message_count for each in self._files)
+        # Its counts, where the sums agree: sqlite3 would have to count by reading everything.
         if stored is not None and total == stored.message_count and _names_all(stored, self._files):
             topics = _with_definitions(stored.topics_with_message_count, self._files)
         else:

@@ -113,7 +113,7 @@ class BagWriter:
     def add_topic(self, topic: BagTopic) -> int:
         """Add a topic, at any time, and return its number; the same name and type again return the same number."""
         key = topic.name, topic.type_name
-        if key not in self._numbers:
+        if key not in self._numbers:  # later profiles do not count: a channel of an MCAP cannot be changed
             self._numbers[key] = len(self._topics)
             self._topics.append(topic)
             self._in_file.append(self._file.add_topic(topic))

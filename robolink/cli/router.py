@@ -46,6 +46,7 @@ def router(
     from robolink.networks.router import endpoint_of, target_of
     from robolink.transport.router import running
 
+    # Not all interfaces, as ROS 2's: nodes that are confined to loopback would hear whoever reaches the router.
     here = [endpoint_of(each, "--listen") for each in listen or ["localhost"]]
     there = [target_of(each) for each in connect or []]
     try:

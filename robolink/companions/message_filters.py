@@ -198,7 +198,7 @@ class TimeSynchronizer(SimpleFilter):
         queue.pop(stamp, None)
         queue[stamp] = msg
         while len(queue) > self.queue_size:
-            del queue[next(iter(queue))]
+            del queue[next(iter(queue))]  # the first to arrive, not the oldest stamp: a clock may be set back
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):

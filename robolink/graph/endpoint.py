@@ -189,7 +189,7 @@ class Endpoint:
             self.others[gid] = token
             self.on_other(True)
         else:
-            if self.warns:
+            if self.warns:  # logged here, on the graph's thread: a program that only publishes never spins
                 self._disagreements.tell(self.token, token)
             if self.on_disagreement is not None:
                 self.on_disagreement()

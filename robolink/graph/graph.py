@@ -39,7 +39,10 @@ SETTLED_WITHIN = 0.1
 """Longest wait for what was announced before, in seconds; it takes 2 ms."""
 
 MOST_OF_SESSION = 20_000
-"""Most tokens of one session that are kept, 1 kB each; a node has some 15, and Zenoh keeps 5 kB of each in any case."""
+"""Most tokens of one session that are stored: a stranger could fill the memory by announcing nodes.
+
+Each takes 1 kB here, and 5 kB in Zenoh in any case; a node has some 15.
+"""
 
 MOST = 100_000
 """Most tokens of all sessions of others: a peer may call its session as it likes."""

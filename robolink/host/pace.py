@@ -139,6 +139,7 @@ class HostTime(VirtualTime):
 
     def pass_on(self) -> None:
         """Let others go on who are ready now. After FREE_POLLS polls at one moment, each takes a millisecond."""
+        # A loop of `spin_once(timeout_sec=0)` would stop virtual time.
         self._asked = self._asked + 1 if self._asked_at == self._now else 0
         self.scheduler.wait(until=self._now + (POLL_TAKES if self._asked > FREE_POLLS else 0))
         self._asked_at = self._now

@@ -322,7 +322,7 @@ def load(source: NodeSource, program: ProgramLike) -> Callable[[], Any]:
     A node's own file is loaded anew for every start, as in a process of its own: two programs from one file, and one
     that was started again, share none of its variables. What it imports is shared: its neighbours, modules of packages.
     """
-    if not source.module:
+    if not source.module:  # loaded again: two programs of one file must not share variables
         _forget(str(source.path.resolve()))
     return load_node(source, script=lambda found, reach: _script(found, reach, program))
 

@@ -80,7 +80,7 @@ class NodeToStart(msgspec.Struct, frozen=True):
     process: str = ""
     start_after: tuple[StartAfter, ...] = ()
     respawn: Respawn = Respawn(when="never")
-    on_exit: OnExit = "shutdown"
+    on_exit: OnExit = "shutdown"  # not ROS 2's: a robot whose controller has gone must not look as if it ran
     log_level: LogLevel | None = None
     enclave: str = ""
     cpu: tuple[int, ...] = ()

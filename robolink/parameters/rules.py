@@ -45,6 +45,7 @@ class WrittenParameter(Parameter[Any]):
 
     def as_type(self, type_: Parameter.Type) -> Parameter[Any]:
         """Return the parameter as it was meant, if it is declared with a type: integers for doubles are doubles."""
+        # rclpy refuses these, and every class stumbles over `-p speed:=1`.
         if type_ is Parameter.Type.DOUBLE and self.type_ is Parameter.Type.INTEGER:
             return Parameter(self.name, type_, float(self.value))
         if type_ is Parameter.Type.DOUBLE_ARRAY and self.type_ is Parameter.Type.INTEGER_ARRAY:

@@ -38,7 +38,7 @@ class Tree:
         wrong = _what_is_wrong(parent, child, rigid)
         if wrong is not None:
             return wrong
-        if self._would_loop(parent, child, stamp):
+        if self._would_loop(parent, child, stamp):  # tf2 takes it in, and then fails at each lookup
             return "TF_LOOP", f"'{parent}' is below '{child}' already"
         if static:
             self.caches[child] = StaticCache(parent, unit(rigid))

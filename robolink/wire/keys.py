@@ -20,6 +20,7 @@ NO_HASH = "TypeHashNotSupported"
 """Placeholder that Humble sends in place of a type hash."""
 
 _BUFFERS = "/_buf_cpu"
+"""Suffix of the key on which Lyrical sends types with a `uint8[]`, and only to who announces a backend."""
 
 CHUNK = r"[A-Za-z0-9_.~-]+"
 """Regular expression of the part of a name between two slashes."""

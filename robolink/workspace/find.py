@@ -247,7 +247,7 @@ def workspace_of(path: Path) -> Path | None:
 
 
 def _is_workspace(folder: Path) -> bool:
-    # One of them alone means nothing: many a folder has a `configs/`.
+    # One of them alone means nothing: many a folder has a `configs/`. Any two: one with types may lack `configs/`.
     return sum((folder / part).is_dir() for part in PARTS) >= 2 or is_ros_workspace(folder)
 
 

@@ -180,6 +180,7 @@ class RobotTopics:
 
     def place_odometry(self) -> None:
         """Place the odometry's frame on the map so that the robot stands where it is now."""
+        # Its true pose, so that /odom can be compared with the world file.
         truth, believed = self.robot.pose, self.robot.odometry
         turn = truth.theta - believed.theta
         x, y, _ = placed_on(plane.Pose(theta=turn), believed.place)
@@ -187,6 +188,7 @@ class RobotTopics:
 
     def publish_reading(self, sensor: Sensor, value: Any, stamp: Stamp) -> None:
         """Publish a sensor's measurement."""
+        # Heard or not: who listens should change nothing, and a recorder that comes by a wildcard misses nothing.
         publisher, frame = self._sensors[sensor.topic]
         if isinstance(sensor, Lidar):
             publisher.publish(self._prepared_scan(sensor, value, frame).payload(stamp, value))

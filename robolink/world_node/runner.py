@@ -18,7 +18,7 @@ from robolink.world_node.messages import time_message
 from robolink.world_node.simulation import Simulation
 
 TURN = 0.01
-"""Most simulated time of one turn, in seconds; then other callbacks have theirs."""
+"""Most simulated time of one turn, in seconds: at `rtf` 0 all other callbacks would starve."""
 
 OFTENEST, RAREST = 0.001, 1.0
 """Shortest and longest period of looks at the clock, in seconds."""

@@ -61,6 +61,7 @@ class Simulation:
         self._clock = node.create_publisher(Clock, "/clock", 10) if publish_clock else None
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
+        # Also when others are spawned: topics must not change their names while somebody listens.
         self._only = description.robots[0].name if len(description.robots) == 1 else None
         self._open_topics()
 
@@ -116,6 +117,7 @@ class Simulation:
 
     def reset(self) -> None:
         """Reset the world: every robot of the world file is where it started, others are gone; time goes on."""
+        # Stamps go on, since a jump back of /clock breaks listeners.
         self._epoch, self.world, self._contacts = self.now, World(self.description, seed=self._seed), 0
         self._open_topics()
 

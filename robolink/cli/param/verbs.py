@@ -288,7 +288,7 @@ UNCHANGED = "it is read-only and has this value already"
 def set_one(node: str, parameter: str, text: str, timeout: float, *, as_json: bool) -> int:
     """Set a parameter, and return the exit code. The text is read as the type that the parameter has."""
     with asking(node, timeout) as client:
-        value = read(text, _descriptor(client, parameter))
+        value = read(text, _descriptor(client, parameter))  # ros2 would refuse `1` for a double
         result = client.set([Parameter(name=parameter, value=value)])[0]
         if result.successful:
             _tell_of_type(parameter, text, get_parameter_value(text).type, value)

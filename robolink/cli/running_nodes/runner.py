@@ -227,6 +227,7 @@ def spin(node_class: Callable[[], Node]) -> None:
     """Run a Node class until its context ends."""
     import robolink
 
+    # Exit code 0 after Ctrl-C, as of rclpy's usual main(); a script decides itself.
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         node = make_node(node_class)
         try:

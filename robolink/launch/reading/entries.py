@@ -34,7 +34,7 @@ T = TypeVar("T")
 __all__ = ["Entry", "read_launch_file", "read_with_mistakes"]
 
 MOST_PARTS = 20_000
-"""Most copies of nodes, groups and includes in all."""
+"""Most copies of nodes, groups and includes in all: ten lines of arguments could fill the memory."""
 MOST_INCLUDES = 2_000
 """Most includes, each file counted as often as it is included."""
 DEEPEST_INCLUDES = 50

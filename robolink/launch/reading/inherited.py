@@ -68,7 +68,7 @@ class Inherited:
     def _joined(self, section: Section, own: NodeDescription | GroupDescription, around: str) -> Inherited:
         """Return the settings with those of a section added, whose `process` is in the namespace `around`."""
         settings = {key: Placed(getattr(own, key), Place(section, (key,))) for key in _SETTINGS if key in section}
-        if own.process:
+        if own.process:  # not in the node's own namespace: copies of a node can share a process
             name = own.process if own.process.startswith("/") else f"{around}/{own.process}"
             settings["process"] = Placed(name.removeprefix("/"), Place(section, ("process",)))
         outer = {name: each for name, each in self.remappings.items() if name not in own.remappings}

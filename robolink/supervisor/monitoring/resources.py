@@ -150,6 +150,8 @@ def measured(meter: Meter, nodes: Sequence[Status]) -> dict[str, Usage]:
 def line_of_figures(usage: Mapping[str, Usage]) -> str:
     """Format the total use, then that of each process, the busiest first, on one line.
 
+    A line, since a table that is refreshed in its place would fight with the nodes' own lines.
+
     >>> line_of_figures({"talker": Usage(2.5, 46_000_000, 1)})
     '2 % of a core, 46 MB: talker 2 % 46 MB'
     """

@@ -23,6 +23,7 @@ from typing import BinaryIO
 from robolink.system import clocks
 
 MOST_RUNS = 30
+"""Newest runs whose folders stay, so that nobody has to clear up."""
 LARGEST = 50_000_000
 """Size in bytes at which a file is rotated to NAME.log.old: a process has twice as much at most."""
 OWN_FILE = "launch.log"

@@ -25,7 +25,7 @@ from robolink.view.sources.bag import BagSource
 from robolink.view.sources.live import LiveSource
 
 PERIOD = 1 / 60
-"""Interval of the tick, in seconds: batches go out at most so often."""
+"""Interval of the tick, in seconds: a thread woken by each message fights with the loop for Python's lock."""
 
 TRUSTED = ("clientPublish", "services")
 """Capabilities that a read-only client is not offered. It keeps "parameters", one word for reading and setting them."""
