@@ -30,7 +30,7 @@ from robolink.message.slot_types import FieldTypes, SlotTypes
 from robolink.message.spelling import wrong_name
 
 ZEROS: dict[str, Any] = {"bool": False, "byte": b"\x00", "string": "", "wstring": ""}
-"""Default values of the primitives that are no numbers."""
+"""Default values of the primitives that are not numbers."""
 
 
 class MessageMeta(msgspec.StructMeta):
@@ -146,7 +146,7 @@ def _bare(cls: Any) -> Any:
 
 
 def _parts(message: Any) -> Any:
-    """Return what a copy is made of, for `copy` and `pickle`."""
+    """Return the class and the state of a copy, for `copy` and `pickle`."""
     return _bare, (type(message),), (vars(message), {name: getattr(message, name) for name in message.__ros_fields__})
 
 

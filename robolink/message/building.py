@@ -167,8 +167,8 @@ class _Maker:
     def _consists_of(self, parts: dict[str, str]) -> bool:
         """True if the fields are those of a service or an action, and their types its own parts."""
         name = self.description.type_name
-        wanted = [(field, name + suffix) for field, suffix in parts.items()]
-        return [(field.name, field.nested_type_name) for field in self.description.fields] == wanted
+        expected = [(field, name + suffix) for field, suffix in parts.items()]
+        return [(field.name, field.nested_type_name) for field in self.description.fields] == expected
 
     def message(self, name: str) -> type[Message]:
         """Return the class of a described message, after those of its fields."""
@@ -224,8 +224,8 @@ class _Maker:
             nested = shown(field.nested_type_name)
             raise MessageError(f"{where}: type id {field.type_id} with the nested type '{nested}'")
         sizes = {"size": field.capacity, "string_bound": field.string_capacity}
-        for what, wanted in (("size", shape in ("array", "bounded")), ("string_bound", bounded)):
-            if not (0 < sizes[what] <= LARGEST if wanted else sizes[what] == 0):
+        for what, expected in (("size", shape in ("array", "bounded")), ("string_bound", bounded)):
+            if not (0 < sizes[what] <= LARGEST if expected else sizes[what] == 0):
                 raise MessageError(f"{where}: type id {field.type_id} with a {what.replace('_', ' ')} of {sizes[what]}")
         message = None if base else self.message(field.nested_type_name)
         return FieldType(base=base or field.nested_type_name, message=message, shape=shape, **sizes)

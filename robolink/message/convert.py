@@ -38,8 +38,8 @@ def from_builtins(cls: type[Message], data: Any) -> Any:
 
 def _fill(message: Message, data: Any, path: str) -> None:
     if not isinstance(data, dict):
-        wanted = ", ".join(message.__ros_fields__) or "nothing"
-        raise EncodeError(f"{path}: expected a mapping of {wanted}, got {data!r:.60}{_unspaced(message, data)}")
+        fields = ", ".join(message.__ros_fields__) or "nothing"
+        raise EncodeError(f"{path}: expected a mapping of {fields}, got {data!r:.60}{_unspaced(message, data)}")
     for name, value in data.items():
         kind = message.__ros_fields__.get(name)
         if kind is None:
@@ -138,7 +138,7 @@ def explain(cls: type[Message], message: Any) -> str:
 
 
 def explain_value(kind: FieldType, value: Any, path: str) -> str:
-    """Return what of one field's value does not fit; '' if all does."""
+    """Return the mistake in one field's value; '' if it fits."""
     return next(_wrong(kind, value, path), "")
 
 
@@ -215,7 +215,7 @@ def bools(values: Any) -> bytes:
 def instance(value: Any, cls: type[Message]) -> None:
     """Raise TypeError unless `value` is of the class, even if it has the same fields as one that is."""
     if not isinstance(value, cls):
-        raise TypeError(f"{value!r:.60} is no {cls.__ros_type__}")
+        raise TypeError(f"{value!r:.60} is not a {cls.__ros_type__}")
 
 
 def fixed(values: Any, size: int) -> None:

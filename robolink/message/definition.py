@@ -130,7 +130,7 @@ class _Reader:
     def lines(self, text: str) -> list[str]:
         """Split a text as editors do, after refusing what no editor shows."""
         if len(text) > LONGEST_TEXT:
-            self.fail(1, 1, f"{len(text)} characters are no interface file (at most {LONGEST_TEXT})")
+            self.fail(1, 1, f"{len(text)} characters are too many for an interface file (at most {LONGEST_TEXT})")
         lines = re.split(r"\r\n|\n|\r", text.removeprefix("\ufeff"))
         for number, line in enumerate(lines, 1):
             if len(line) > LONGEST_LINE:
@@ -154,8 +154,8 @@ class _Reader:
             if len(parted) > len(suffixes):
                 self.fail(number, 1, f"one '---' too many: a .{kind} file has {len(suffixes) - 1}")
         if len(parted) < len(suffixes):
-            wanted = suffixes[len(parted)].removeprefix("_").lower()
-            self.fail(len(lines), 1, f"the file ends without a line '---' before the {wanted}")
+            section = suffixes[len(parted)].removeprefix("_").lower()
+            self.fail(len(lines), 1, f"the file ends without a line '---' before the {section}")
         return tuple(
             _SectionReader(self, part, start).read(self.type_name + suffix)
             for part, start, suffix in zip(parted, starts, suffixes, strict=True)

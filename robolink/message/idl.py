@@ -96,18 +96,18 @@ class _Parser:
         """The token to come; an empty one at the end."""
         return self.tokens[self.at]
 
-    def take(self, wanted: str = "") -> Token:
-        """Take the next token, which must be `wanted` if that is given."""
+    def take(self, expected: str = "") -> Token:
+        """Take the next token, which must be `expected` if that is given."""
         token = self.next
-        if not token.text or (wanted and token.text != wanted):
+        if not token.text or (expected and token.text != expected):
             found = f"'{shown(token.text)}'" if token.text else "the end of the file"
-            self.fail(token, f"expected {repr(wanted) if wanted else 'more'}, got {found}")
+            self.fail(token, f"expected {repr(expected) if expected else 'more'}, got {found}")
         self.at += 1
         return token
 
-    def takes(self, wanted: str) -> bool:
-        """Take the next token if it is `wanted`."""
-        if self.next.text != wanted:
+    def takes(self, expected: str) -> bool:
+        """Take the next token if it is `expected`."""
+        if self.next.text != expected:
             return False
         self.at += 1
         return True
@@ -125,8 +125,8 @@ class _Parser:
         """Return the file's definition of the type."""
         while self.next.text:
             self._statement()
-        wanted = [self.short + suffix for suffix in suffixes]
-        for name in wanted:
+        expected = [self.short + suffix for suffix in suffixes]
+        for name in expected:
             if name not in self.structs:
                 there = ", ".join(self.structs) or "none"
                 self.fail(
@@ -134,7 +134,7 @@ class _Parser:
                 )
         sections = tuple(
             Section(self.type_name + suffix, (), self.structs[name], tuple(self.constants.get(name, ())), None)
-            for suffix, name in zip(suffixes, wanted, strict=True)
+            for suffix, name in zip(suffixes, expected, strict=True)
         )
         return Definition(self.type_name, sections, None, self.origin)
 

@@ -97,7 +97,7 @@ class Numbers:
             self.store(message, made)
 
     def packable(self, message: Any) -> Any:
-        """Return what the encoder takes the numbers from: a view of bytes received as it is, else as `__get__`."""
+        """Return the numbers for the encoder: a view of bytes received as it is, else as `__get__`."""
         value = self.stored(message)
         if type(value) is memoryview and value.format == self.code and value.ndim == 1 and value.c_contiguous:
             return value
@@ -133,7 +133,7 @@ class FixedNumbers(Numbers):
     dtype: Any = "not known before numpy is imported"
 
     def packable(self, message: Any) -> Any:
-        """Return what the encoder takes the numbers from."""
+        """Return the numbers for the encoder."""
         return self.__get__(message)
 
     def __get__(self, message: Any, owner: type | None = None) -> Any:

@@ -28,7 +28,7 @@ RIGHT = {
 
 
 def wrong_name(what: str, name: str) -> str:
-    """Return what is wrong with the name of a `what` (a key of PATTERNS); '' if it is right.
+    """Return the mistake in the name of a `what` (a key of PATTERNS); '' if it is right.
 
     >>> wrong_name("field", "maxSpeed")
     "'maxSpeed' is not a field name: a-z, digits and single underscores, as in max_speed"

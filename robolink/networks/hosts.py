@@ -79,7 +79,7 @@ def parse(text: str) -> Host | None:
 
 
 def mistake(text: str) -> str:
-    """Return what keeps a text from being HOST[:PORT] where that can be said; empty otherwise.
+    """Return the reason why a text is not HOST[:PORT], where it is known; empty otherwise.
 
     >>> mistake("http://robot"), mistake("robot:70000"), mistake("tcp/robot")
     ('write HOST:PORT in place of a URL', 'ports are 1 to 65535', 'write tcp/HOST:PORT, or HOST alone')

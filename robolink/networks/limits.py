@@ -79,7 +79,7 @@ class Limits(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 def mistakes(limits: Limits) -> Iterator[tuple[tuple[Step, ...], str, bool]]:
-    """Yield what types cannot express: the steps to a wrong value, what is wrong, and True if it is about the key."""
+    """Yield mistakes that types cannot express: the steps to it, what is wrong, and True if it is about the key."""
     for key in ("control", "rate", "size"):
         if len(getattr(limits, key)) > MOST_TOPICS:
             yield (key,), f"more than {MOST_TOPICS:,} topics", False

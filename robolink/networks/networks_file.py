@@ -116,10 +116,10 @@ def _is_own(folder: Path) -> bool:
     if sys.platform == "win32":
         return True
     try:
-        kept = [folder.stat(), (folder / FILE).stat()]
+        stats = [folder.stat(), (folder / FILE).stat()]
     except OSError:
         return False
-    return all(each.st_uid in (0, os.getuid()) and not each.st_mode & 0o022 for each in kept)
+    return all(each.st_uid in (0, os.getuid()) and not each.st_mode & 0o022 for each in stats)
 
 
 def _read(path: Path) -> dict[str, str | Peers]:
@@ -134,7 +134,7 @@ def _read(path: Path) -> dict[str, str | Peers]:
 
 
 def _beside(path: Path, meant: str | Peers) -> str | Peers:
-    """Return what a name stands for; a file of Zenoh's is looked for beside the file of networks."""
+    """Return the meaning of a name; a file of Zenoh's is looked for beside the file of networks."""
     if isinstance(meant, Peers):
         return msgspec.structs.replace(meant, network=str(_beside(path, meant.network))) if meant.network else meant
     return os.fspath(path.parent / meant) if meant.endswith(FILES) else meant

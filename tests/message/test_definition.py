@@ -238,7 +238,7 @@ BAD = [
     ("int32 a\0", "1:8: a NUL character: this is not a text file"),
     ("# \ud800", "1:3: half a character ('\\ud800'): this is not a text file"),
     ("int32 a\n#" + "x" * 1_000_000, "2:1: a line of 1000001 characters (at most 65536)"),
-    ("\n" * 4_000_001, "1:1: 4000001 characters are no interface file (at most 4000000)"),
+    ("\n" * 4_000_001, "1:1: 4000001 characters are too many for an interface file (at most 4000000)"),
 ]
 
 

@@ -89,16 +89,16 @@ def run_with_qos(what: str, kind: Callable[[str, QoSProfile], Node], args: list[
     parser = argparse.ArgumentParser(f"{what}_qos")
     parser.add_argument("--reliable", action="store_true", help="reliable, not best effort")
     parser.add_argument("-n", "--number_of_cycles", type=int, default=20, help="callbacks after which it ends")
-    asked = parser.parse_args(own_words(args))
+    options = parser.parse_args(own_words(args))
     reliable = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 
     def make() -> Node:
-        node = kind(f"{what}_qos", reliable if asked.reliable else qos_profile_sensor_data)
-        node.get_logger().info(f"{'Reliable' if asked.reliable else 'Best effort'} {what}")
+        node = kind(f"{what}_qos", reliable if options.reliable else qos_profile_sensor_data)
+        node.get_logger().info(f"{'Reliable' if options.reliable else 'Best effort'} {what}")
         return node
 
     with robolink.init(args=args):
-        spin_times(make, asked.number_of_cycles)
+        spin_times(make, options.number_of_cycles)
 
 
 def run_talker_qos(args: list[str] | None = None) -> None:

@@ -100,8 +100,8 @@ class Joints:
 
 def _free(joint: Joint, settings: Settings) -> FreeJoint:
     low, high = limits(joint, settings.use_smallest)
-    wanted = zip(QUANTITIES, (settings.positions, settings.velocities, settings.efforts), strict=True)
-    values = {name: 0.0 for name, is_wanted in wanted if is_wanted}
+    choices = zip(QUANTITIES, (settings.positions, settings.velocities, settings.efforts), strict=True)
+    values = {name: 0.0 for name, is_published in choices if is_published}
     if "position" in values:
         middle = (low + high) / 2 if low > 0 or high < 0 else 0.0
         values["position"] = float(settings.zeros.get(joint.name, middle))

@@ -58,7 +58,7 @@ class JoyNode(Node):
         self._rate = self._declare("autorepeat_rate", self.repeat, words, 0.0, 1000.0)
         self._sticky = self._declare("sticky_buttons", False, "a press toggles a button, a release does nothing")
         self._joy = self.create_publisher(Joy, "joy", 10)
-        self._told, self._published = "", 0
+        self._reported, self._published = "", 0
         self._looks = self.create_timer(LOOK, self.on_timer, autostart=False)
         self.create_timer(RETRY, self.find)
         self.find()
@@ -98,7 +98,7 @@ class JoyNode(Node):
             self._tell(f"{path} cannot be opened: {error.strerror or error}; may this user read it?")
             return
         self.state = self.made_state(self.gamepad, self._deadzone, self._sticky)
-        self._told = ""
+        self._reported = ""
         self._looks.reset()
         self.get_logger().info(f"Opened joystick: {self.gamepad.name}.  deadzone: {self._deadzone:f}")
 
@@ -128,9 +128,9 @@ class JoyNode(Node):
 
     def _tell(self, text: str) -> None:
         """Warn of something, once."""
-        if text != self._told:
+        if text != self._reported:
             self.get_logger().warning(text)
-        self._told = text
+        self._reported = text
 
     def destroy_node(self) -> None:
         """Close the gamepad, too."""

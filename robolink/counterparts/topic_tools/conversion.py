@@ -99,15 +99,15 @@ def transform(words: list[str]) -> Conversion:
     parser.add_argument("expression", nargs="?", default="m", help="Python's expression on the message m")
     parser.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"], help="modules of it")
     parser.add_argument("--field", default="", help="field that m is, such as orientation.x")
-    asked = parser.parse_args(words)
-    code, names = compiled(asked.expression), {each: _module(each) for each in asked.modules}
-    path = [each for each in asked.field.split(".") if each]
+    options = parser.parse_args(words)
+    code, names = compiled(options.expression), {each: _module(each) for each in options.modules}
+    path = [each for each in options.field.split(".") if each]
 
     def convert(message: Any, kind: type[Any]) -> Any:
         m = functools.reduce(getattr, path, message)
         return eval(code, {**names, "m": m})  # noqa: S307 - the user's own text, in their own shell
 
-    return Conversion("transform", Topics(asked.input, asked.output_topic, asked.output_type), convert)
+    return Conversion("transform", Topics(options.input, options.output_topic, options.output_type), convert)
 
 
 def _module(name: str) -> Any:
@@ -132,8 +132,8 @@ def relay_field(words: list[str]) -> Conversion:
     """Make the node of a command line."""
     parser = parser_of("relay_field")
     parser.add_argument("expression", help="fields of the output as YAML, with expressions on the message m")
-    asked = parser.parse_args(words)
-    fields = prepared(yamltext.plain(yamltext.compose(asked.expression, "EXPRESSION"), "EXPRESSION"))
+    options = parser.parse_args(words)
+    fields = prepared(yamltext.plain(yamltext.compose(options.expression, "EXPRESSION"), "EXPRESSION"))
     if not isinstance(fields, dict):
         raise UsageError("expected fields such as '{frame_id: m.data}'")
 
@@ -144,7 +144,7 @@ def relay_field(words: list[str]) -> Conversion:
             put(now)
         return made
 
-    node = Conversion("relay_field", Topics(asked.input, asked.output_topic, asked.output_type), convert)
+    node = Conversion("relay_field", Topics(options.input, options.output_topic, options.output_type), convert)
     return node
 
 

@@ -55,7 +55,7 @@ class TopicTool(Node):
         self.source: Source | None = None
         self.sink: Publisher[Any] | None = None
         self._heard: Subscription[Any] | None = None
-        self._told = ""
+        self._reported = ""
         try:
             self.set_up()
             words = "listen only while somebody listens to the output"
@@ -119,7 +119,7 @@ class TopicTool(Node):
             self.end()
         if self.sink is None:
             self.sink = self.create_publisher(self.output_class(found), self.output_topic, found.qos)
-        self._listen(found, wanted=not self.lazy or self.sink.get_subscription_count() > 0)
+        self._listen(found, has_listeners=not self.lazy or self.sink.get_subscription_count() > 0)
 
     def end(self) -> None:
         """Neither listen nor publish, until the next look."""
@@ -129,12 +129,12 @@ class TopicTool(Node):
             self.destroy_publisher(self.sink)
         self._heard = self.sink = None
 
-    def _listen(self, source: Source, *, wanted: bool) -> None:
+    def _listen(self, source: Source, *, has_listeners: bool) -> None:
         topic = self.resolve_topic_name(self.input_topic)
-        if self._heard is not None and (not wanted or self._heard.topic != topic):
+        if self._heard is not None and (not has_listeners or self._heard.topic != topic):
             self.destroy_subscription(self._heard)
             self._heard = None
-        if self._heard is None and wanted:
+        if self._heard is None and has_listeners:
             self._heard = self.create_subscription(source.message_class, topic, self._on_bytes, source.qos, raw=True)
 
     def _on_bytes(self, payload: bytes) -> None:
@@ -156,9 +156,9 @@ class TopicTool(Node):
 
     def _tell(self, text: str) -> None:
         """Warn of something, once."""
-        if text != self._told:
+        if text != self._reported:
             self.get_logger().warning(text)
-        self._told = text
+        self._reported = text
 
 
 def numbered(words: list[str], usage: str, *kinds: tuple[str, type[Any]], optional: str = "") -> dict[str, Any]:

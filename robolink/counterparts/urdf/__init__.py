@@ -45,10 +45,10 @@ MOST = 20
 
 def tell_ignored(robot: Element) -> None:
     """Emit a `FileWarning` for each word in a robot, its links and its joints that URDF does not have."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for about, text in _ignored(robot):
-        if text not in told and len(told) < MOST:
-            told.add(text)
+        if text not in reported and len(reported) < MOST:
+            reported.add(text)
             warn(about.mistake(text))
 
 
@@ -344,7 +344,7 @@ def _odd_mimics(joints: dict[str, Joint], places: dict[str, Element]) -> Iterato
 
 
 def _root(root: Element, links: dict[str, Element], joints: dict[str, Joint], places: dict[str, Element]) -> str:
-    """Return the link that no joint moves. Raises DocumentError if the links are no tree."""
+    """Return the link that no joint moves. Raises DocumentError unless the links form a tree."""
     above: dict[str, Joint] = {}
     for each in joints.values():
         if each.child in above:

@@ -48,7 +48,7 @@ def expanded(words: list[str]) -> str:
     Raises:
         XacroMissingError: (an ImportError) if the package xacro is not installed.
         XacroError: (a ValueError) if the file, or one that it includes, has a mistake.
-        SystemExit: for words that are no arguments of xacro; the usage has been printed.
+        SystemExit: for words that are not arguments of xacro; the usage has been printed.
     """
     xacro = _package()
     options, file = xacro.cli.process_args(list(words))
@@ -78,9 +78,9 @@ def _package() -> Any:
 
 def _expand(xacro: Any, file: str, options: Any) -> str:
     xmltext.read(Path(file))  # for its mistakes, which this one finds with their lines, and refuses entities
-    wanted = {"mappings": options.mappings, "verbosity": options.verbosity}
+    settings = {"mappings": options.mappings, "verbosity": options.verbosity}
     try:
-        document = xacro.process_file(file, **wanted)
+        document = xacro.process_file(file, **settings)
         if options.just_deps:
             return " ".join(xacro.all_includes) + "\n"
         return str(document.toprettyxml(indent="  "))
