@@ -70,10 +70,10 @@ class Host:
         self._environments: dict[tuple[tuple[str, str | None], ...], dict[str, str | None]] = {}
         self._random = random.getstate()
         self._stamps = output.now
-        self._kept = ExitStack()
-        self._kept.enter_context(process_as_before())
+        self._cleanup = ExitStack()
+        self._cleanup.enter_context(process_as_before())
         self._is_closing = self._is_closed = False
-        self.wishes: dict[str, Any] = {}
+        self.preferred_parameters: dict[str, Any] = {}
         """Values by parameter, for nodes started by name or file that declare it, have no other, and let it through."""
         self.real_time_use: list[RealTimeUse] = []
         """Uses of real time by programs, each once: program, what, and where in its code."""
@@ -247,7 +247,7 @@ class Host:
             uninstall()
             logging.set_time_source(self._stamps)
             random.setstate(self._random)
-            self._kept.close()
+            self._cleanup.close()
 
     def __enter__(self) -> Host:
         return self

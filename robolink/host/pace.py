@@ -98,7 +98,7 @@ class HostTime(VirtualTime):
     def __init__(self, start: int) -> None:
         super().__init__(start)
         self.scheduler = Scheduler(self)
-        self._asked, self._asked_at = 0, 0
+        self._polls, self._polled_at = 0, 0
 
     def at(self, time_ns: int, act: Callable[[], object]) -> None:
         """Call `act()` when it is `time_ns`, before the callbacks that are due then; at once is the earliest."""
@@ -140,9 +140,9 @@ class HostTime(VirtualTime):
     def pass_on(self) -> None:
         """Let others go on who are ready now. After FREE_POLLS polls at one moment, each takes a millisecond."""
         # A loop of `spin_once(timeout_sec=0)` would stop virtual time.
-        self._asked = self._asked + 1 if self._asked_at == self._now else 0
-        self.scheduler.wait(until=self._now + (POLL_TAKES if self._asked > FREE_POLLS else 0))
-        self._asked_at = self._now
+        self._polls = self._polls + 1 if self._polled_at == self._now else 0
+        self.scheduler.wait(until=self._now + (POLL_TAKES if self._polls > FREE_POLLS else 0))
+        self._polled_at = self._now
 
 
 LOOK = 0.1

@@ -82,8 +82,8 @@ class ProgramLike(Protocol):
         """The driver of its Node classes' executor."""
 
     @property
-    def wishes(self) -> Mapping[str, Any]:
-        """The host's wishes for parameters of its nodes."""
+    def preferred_parameters(self) -> Mapping[str, Any]:
+        """Values that the host prefers for parameters of its nodes."""
 
     @property
     def is_over(self) -> bool:

@@ -33,23 +33,23 @@ class HostedPlatform(Platform):
         self._program.contexts.append(context)
 
     def adopt(self, node: Any, arguments: Arguments) -> None:
-        """Set the parameters of a node that the host wishes, and the level of its log, if it is the root's."""
-        node._parameter_store_.preferred = self._program.wishes
+        """Set the parameters of a node that the host prefers, and the level of its log, if it is the root's."""
+        node._parameter_store_.preferred = self._program.preferred_parameters
         logger = node.get_logger().name
         for name, level in arguments.log_levels:
             if not name and not get_logger_level(logger):
                 set_logger_level(logger, level)
 
-    def time_base(self, wanted: TimeBase | None) -> TimeBase:
-        """Return the program's time, whatever is wanted."""
+    def time_base(self, given: TimeBase | None) -> TimeBase:
+        """Return the program's time, whatever is given."""
         return self._program.time
 
     def argv(self) -> list[str]:
         """Return the program's command line."""
         return self._program.argv
 
-    def transport(self, wanted: Any) -> Any:
-        """Open a session of its own for a context, whatever is wanted."""
+    def transport(self, given: Any) -> Any:
+        """Open a session of its own for a context, whatever is given."""
         return self._program.host.connect(self._program.name)
 
     def begin_logging(self, arguments: Arguments, time_base: TimeBase) -> None:

@@ -50,7 +50,7 @@ class ProgramHost(HostLike, Protocol):
     """Host as seen by a program."""
 
     seed: int
-    wishes: dict[str, Any]
+    preferred_parameters: dict[str, Any]
     """Values by parameter, for nodes that declare it and have no other."""
     pace: Pace
 
@@ -129,9 +129,9 @@ class Program:
         return list({id(node): node for node in (*self._made, *tracked)}.values())
 
     @property
-    def wishes(self) -> Mapping[str, Any]:
-        """Return the host's wishes for parameters of its nodes; none for a class that is given as it is."""
-        return self.host.wishes if self.parts[0].is_found else {}
+    def preferred_parameters(self) -> Mapping[str, Any]:
+        """Return the values that the host prefers for its nodes' parameters; none for a class given as it is."""
+        return self.host.preferred_parameters if self.parts[0].is_found else {}
 
     @property
     def is_over(self) -> bool:
@@ -220,7 +220,7 @@ class Program:
         if isinstance(error, _ENDS) or (isinstance(error, NotInitializedException) and self._was_interrupted()):
             return INTERRUPTED if is_script else 0
         error = self.error = _lacking_opencv(error) or error
-        self._logger().error(self._told(error))
+        self._logger().error(self._message_for(error))
         return 1
 
     def _logger(self) -> RcutilsLogger:
@@ -233,7 +233,7 @@ class Program:
         """Return True if it was interrupted, maybe while a node was made."""
         return any(each.interrupted for each in self.contexts)
 
-    def _told(self, error: BaseException) -> str:
+    def _message_for(self, error: BaseException) -> str:
         """Return the message for an error: a line for one of robolink's, a traceback for one of the program's."""
         if isinstance(error, RobolinkError) and not isinstance(error, LackingNameError):
             return f"{self.name}: {error}"

@@ -272,8 +272,8 @@ class Scheduler:
 
     def _is_news(self) -> bool:
         """Return True if threads that take no turns have brought something to do."""
-        is_asked = self._asking is not None and self._asking.is_over()
-        return is_asked or bool(self.due or self._foreign) or any(map(Wait.is_over, self._waits))
+        is_answered = self._asking is not None and self._asking.is_over()
+        return is_answered or bool(self.due or self._foreign) or any(map(Wait.is_over, self._waits))
 
     def fail(self, error: BaseException) -> None:
         """Raise this error in the thread that runs the host."""

@@ -103,7 +103,7 @@ class Supervision:
         self._own: Program | None = None
         self._waiting: list[Callable[[Node], object]] = []
         self._director: Director[Launched] | None = None if direct is None else direct(self)
-        self._is_end_told = self._is_listening = False
+        self._has_announced_end = self._is_listening = False
         host.on_exit.append(self._on_exit)
 
     @property
@@ -116,10 +116,10 @@ class Supervision:
         if self._readiness.held:
             self._session = MemoryTransport(bus=self.host.bus)
             self._session.watch(graph_pattern(), self._on_token)
-        asked = self._asked(lambda director: director.begin(self.host.now))
+        actions = self._directed(lambda director: director.begin(self.host.now))
         for name in self._commands:
-            asked += self._left_out(name)
-        self._do([*self.policy.begin(self.host.now), *asked])
+            actions += self._left_out(name)
+        self._do([*self.policy.begin(self.host.now), *actions])
 
     # What faults need of those who run programs
 
@@ -185,7 +185,7 @@ class Supervision:
     def _exited(self, name: str, code: int, cause: str) -> list[Action]:
         now = self.host.now
         actions = self.policy.exited(name, code, now, cause)
-        return [*actions, *self._asked(lambda director: director.exited(name, code, now))]
+        return [*actions, *self._directed(lambda director: director.exited(name, code, now))]
 
     def _on_token(self, text: str, alive: bool) -> None:
         for name in self._readiness.note_token(text, alive):
@@ -222,8 +222,8 @@ class Supervision:
 
     def _woken(self, now: float) -> list[Action]:
         due = None if self._director is None else self._director.deadline
-        asked = [] if due is None or now < due else self._asked(lambda director: director.woken(now))
-        return [*self.policy.woken(now), *asked]
+        actions = [] if due is None or now < due else self._directed(lambda director: director.woken(now))
+        return [*self.policy.woken(now), *actions]
 
     def _start(self, name: str) -> None:
         if name in self.host.programs:
@@ -232,7 +232,7 @@ class Supervision:
             each = self._launched[name]
             self.host.start(name, each.members, env=each.env)
         if self._director is not None:
-            self._soon(lambda: self._do(self._asked(lambda director: director.started(name, 0, self.host.now))))
+            self._soon(lambda: self._do(self._directed(lambda director: director.started(name, 0, self.host.now))))
 
     def _ask(self, name: str, step: Step) -> None:
         if self.host.program(name).is_over:  # a fault has ended it, and was to start it again
@@ -256,9 +256,9 @@ class Supervision:
 
     def post(self, act: Callable[[float], Sequence[Request[Launched]]]) -> None:
         """Call `act` with the time right after the present turn, and carry out what it returns."""
-        self._soon(lambda: self._do(self._asked(lambda _: act(self.host.now))))
+        self._soon(lambda: self._do(self._directed(lambda _: act(self.host.now))))
 
-    def _asked(self, ask: Callable[[Director[Launched]], Sequence[Request[Launched]]]) -> list[Action]:
+    def _directed(self, ask: Callable[[Director[Launched]], Sequence[Request[Launched]]]) -> list[Action]:
         """Ask the director, if there is one; return the actions that carry out what it asks for."""
         if self._director is None:
             return []
@@ -297,7 +297,7 @@ class Supervision:
         return self.policy.add(name, launched.rules, self.host.now)
 
     def _left_out(self, name: str) -> list[Action]:
-        return self._asked(lambda director: director.left_out(name, self.host.now))
+        return self._directed(lambda director: director.left_out(name, self.host.now))
 
     def _signalled(self, request: Signal) -> list[Action]:
         """Interrupt a program, which handles SIGINT and SIGTERM, or kill it as other signals would do."""
@@ -314,14 +314,14 @@ class Supervision:
         if program is None or self.host.programs.get(name) is not program:
             return
         line = f"{_AS_LINE(record)}\n".encode()
-        self._soon(lambda: self._do(self._asked(lambda director: director.line(name, line, self.host.now))))
+        self._soon(lambda: self._do(self._directed(lambda director: director.line(name, line, self.host.now))))
 
     def _tell_end(self) -> None:
         """Inform the director once that the system is ending."""
         is_ending = self.policy.step is not None or self.policy.is_over
-        if self._director is not None and is_ending and not self._is_end_told:
-            self._is_end_told = True
-            actions = self._asked(lambda director: director.stopping(self.host.now))
+        if self._director is not None and is_ending and not self._has_announced_end:
+            self._has_announced_end = True
+            actions = self._directed(lambda director: director.stopping(self.host.now))
             self.policy.expects_more = False
             self._do(actions)
 

@@ -76,7 +76,7 @@ class LossReports(Entity):
         self.node = node
         self.version = 0
         """Number that changes whenever an older deadline no longer holds."""
-        self._told: dict[bytes, Losses] = {}
+        self._reported: dict[bytes, Losses] = {}
         self._is_quiet = True
         self._publisher: Publisher[DiagnosticArray] | None = None
 
@@ -91,14 +91,14 @@ class LossReports(Entity):
         queue.schedule(self, left)
 
     def take(self) -> Any:
-        """Return what was lost so far, by subscription; NOTHING once the node is destroyed."""
+        """Return the losses so far, by subscription; NOTHING once the node is destroyed."""
         node: Any = self.node
         if node is None or self._destroyed or self._queue_ is None:
             return NOTHING
         counts = [(each.topic_name, each.gid, Losses(each.dropped, each.lost)) for each in node.subscriptions]
         found = [(topic, gid, losses) for topic, gid, losses in counts if losses.total]
         queue, self._queue_ = self._queue_, None
-        was_quiet, self._is_quiet = self._is_quiet, all(losses == self._told.get(gid) for _, gid, losses in found)
+        was_quiet, self._is_quiet = self._is_quiet, all(losses == self._reported.get(gid) for _, gid, losses in found)
         if not self._is_quiet:
             self._schedule(queue, PERIOD_NS)
         elif was_quiet:  # the node has only moved to another executor
@@ -111,7 +111,7 @@ class LossReports(Entity):
         if node is None:
             return
         name = node.get_fully_qualified_name().strip("/")
-        before, self._told = self._told, {gid: losses for _, gid, losses in taken}
+        before, self._reported = self._reported, {gid: losses for _, gid, losses in taken}
         statuses = [_status(name, topic, gid, (before.get(gid, Losses()), losses)) for topic, gid, losses in taken]
         try:
             self._publish(node, statuses)
@@ -163,7 +163,7 @@ def _status(name: str, topic: str, gid: bytes, counts: tuple[Losses, Losses]) ->
 
 
 def losses_in(array: DiagnosticArray) -> dict[bytes, Losses]:
-    """Return what the subscriptions of a report have lost, by their gids; nothing of the diagnostics of others."""
+    """Return the losses of the subscriptions in a report, by their gids; none from the diagnostics of others."""
     found = {}
     for status in array.status:
         values = {each.key: each.value for each in status.values}

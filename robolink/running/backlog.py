@@ -128,7 +128,7 @@ class Backlog:
         self._steady = steady
         self._warns_at = MANY_WAIT
         self._many_since: int | None = None
-        self._has_told = False
+        self._has_reported = False
         self.lost = 0
         """Number of messages that were published and did not arrive, by the sequence numbers of later ones."""
         self.warnings: deque[str] = deque()
@@ -152,8 +152,8 @@ class Backlog:
             missing = self._gaps.before(unpack_attachment(attachment))
         if missing:
             self.lost += missing
-            if not self._has_told:
-                self._has_told = True
+            if not self._has_reported:
+                self._has_reported = True
                 self._tell_of_loss(missing)
         if len(waiting) < MANY_WAIT:
             self._many_since = None

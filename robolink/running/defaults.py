@@ -46,17 +46,17 @@ class Platform:
     def adopt(self, node: Any, arguments: Arguments) -> None:
         """Note that a node was made in a context with these arguments."""
 
-    def time_base(self, wanted: TimeBase | None) -> TimeBase:
+    def time_base(self, given: TimeBase | None) -> TimeBase:
         """Return the time of a context that is asked for this one; None for the platform's own."""
-        return wanted or SystemTime()
+        return given or SystemTime()
 
     def argv(self) -> list[str]:
         """Return the command line of a context that is given none."""
         return sys.argv
 
-    def transport(self, wanted: Any) -> Any:
+    def transport(self, given: Any) -> Any:
         """Return the transport of a context that is asked for this one, by name or as an object; None for any."""
-        return wanted
+        return given
 
     def begin_logging(self, arguments: Arguments, time_base: TimeBase) -> None:
         """Log as a context's arguments say, stamped by its time."""

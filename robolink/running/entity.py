@@ -109,7 +109,7 @@ class Entity(Destroyable):
         self.executor = self._queue_ = None
 
     def take(self) -> Any:
-        """Return what is to be executed, or NOTHING; called under the inbox's lock."""
+        """Return the value to execute with, or NOTHING; called under the inbox's lock."""
         raise NotImplementedError
 
     def execute(self, taken: Any) -> Any:

@@ -47,7 +47,7 @@ class Runnable(Protocol):
         """Number of the waitable whose parts have one turn together in each round; 0 for an entity on its own."""
 
     def take(self) -> Any:
-        """Return what is to be executed, or NOTHING; called under the inbox's lock."""
+        """Return the value to execute with, or NOTHING; called under the inbox's lock."""
 
 
 class Pollable(Runnable, Protocol):
@@ -190,7 +190,7 @@ class ReadyQueue(Generic[EntityT]):
 
     # Rounds
 
-    def begin(self, wanted: Callable[[EntityT], bool] | None = None) -> bool:
+    def begin(self, accepts: Callable[[EntityT], bool] | None = None) -> bool:
         """Begin with the tasks or, when they have had their turns, begin a round. False if there is nothing to do."""
         if self._took:
             self._unsorted, self._took = len(self.blocked), False
@@ -198,20 +198,20 @@ class ReadyQueue(Generic[EntityT]):
         batch = [ready.popleft() for _ in range(len(ready))]  # one by one, since other threads may append
         batch.sort(key=_place)
         if batch and batch[0].place[0] < OTHER:
-            batch = self._apart(batch, wanted)
+            batch = self._apart(batch, accepts)
         else:
             self._ran_tasks = False
         self.turns.extend(batch)
         return bool(batch)
 
-    def _apart(self, batch: list[EntityT], wanted: Callable[[EntityT], bool] | None) -> list[EntityT]:
+    def _apart(self, batch: list[EntityT], accepts: Callable[[EntityT], bool] | None) -> list[EntityT]:
         """Return those of a sorted batch with tasks or waitables that have their turns now, and put back the others."""
         tasks = [each for each in batch if each.place[0] == TASK]
         others = batch[len(tasks) :]
         if tasks and not self._ran_tasks:
             turns, left = tasks, others
         else:
-            turns, left = _with_one_part_each(others, wanted)
+            turns, left = _with_one_part_each(others, accepts)
             if turns:
                 left = [*tasks, *left]
             else:
@@ -222,7 +222,7 @@ class ReadyQueue(Generic[EntityT]):
 
     # Taking
 
-    def take(self, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
+    def take(self, accepts: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
         """Take the entity whose turn it is and whose group lets it run, with what it is to execute."""
         with self.lock:
             turns, ready, blocked = self.turns, self.ready, self.blocked
@@ -234,13 +234,13 @@ class ReadyQueue(Generic[EntityT]):
                     entity = turns.popleft()
                 elif len(ready) == 1 and not blocked:  # a round of one, as usual
                     entity, self._ran_tasks = ready.popleft(), False
-                elif self.begin(wanted):
+                elif self.begin(accepts):
                     continue
                 else:
                     return None
                 group = entity.gate
                 acquire = group._acquire_
-                if (wanted is None or wanted(entity)) and (acquire(False) if acquire else reserve(group, entity)):
+                if (accepts is None or accepts(entity)) and (acquire(False) if acquire else reserve(group, entity)):
                     taken = entity.take()
                     if taken is not NOTHING:
                         self._took = True
@@ -251,10 +251,12 @@ class ReadyQueue(Generic[EntityT]):
                         self._took, self._unsorted = False, 0
                     blocked.append(entity)
 
-    def take_at_once(self, arrival: Any, wanted: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
+    def take_at_once(
+        self, arrival: Any, accepts: Callable[[EntityT], bool] | None = None
+    ) -> tuple[EntityT, Any] | None:
         """Take what arrived for an entity if nothing else waits; else deliver it, and it waits its turn."""
         target = arrival.target
-        if target.straight and wanted is None:
+        if target.straight and accepts is None:
             with self.lock:
                 if not (self.ready or self.turns or target.mailbox.waiting):
                     group = target.gate
@@ -279,14 +281,14 @@ class ReadyQueue(Generic[EntityT]):
 
 
 def _with_one_part_each(
-    batch: list[EntityT], wanted: Callable[[EntityT], bool] | None
+    batch: list[EntityT], accepts: Callable[[EntityT], bool] | None
 ) -> tuple[list[EntityT], list[EntityT]]:
     """Return a sorted batch with the first part of each waitable that may run now, and the other parts."""
     turns, left, lane = list[EntityT](), list[EntityT](), 0
     for each in batch:
         if not each.lane:
             turns.append(each)
-        elif each.lane != lane and (wanted is None or wanted(each)) and each.gate.can_execute(each):
+        elif each.lane != lane and (accepts is None or accepts(each)) and each.gate.can_execute(each):
             lane = each.lane
             turns.append(each)
         else:

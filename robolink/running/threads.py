@@ -69,23 +69,23 @@ class CallbackThreads:
 
     # Taking
 
-    def take(self, wanted: Callable[[Entity], bool] | None = None) -> tuple[Entity, Any] | None:
+    def take(self, accepts: Callable[[Entity], bool] | None = None) -> tuple[Entity, Any] | None:
         """Take from the ready queue what there is a thread for. Raises what a callback has raised meanwhile."""
         if self.failures:
             raise self.failures.popleft()  # before more is begun
         if self.free > 0:
-            return self._queue.take(wanted)
+            return self._queue.take(accepts)
         serves = self.can_serve()
 
         def may(entity: Entity) -> bool:
-            return (entity.quick or (serves and entity.serves)) and (wanted is None or wanted(entity))
+            return (entity.quick or (serves and entity.serves)) and (accepts is None or accepts(entity))
 
         return self._queue.take(may)
 
-    def take_at_once(self, arrival: Any, wanted: Callable[[Entity], bool] | None = None) -> tuple[Entity, Any] | None:
+    def take_at_once(self, arrival: Any, accepts: Callable[[Entity], bool] | None = None) -> tuple[Entity, Any] | None:
         """Take what arrived if a thread is free; else deliver it."""
         if self.free > 0:
-            return self._queue.take_at_once(arrival, wanted)
+            return self._queue.take_at_once(arrival, accepts)
         self._queue.inbox.deliver(arrival)
         return None
 

@@ -69,7 +69,7 @@ class TimeBase(Protocol):
         """True if an executor must be woken whenever a callback in a thread ends, since time waits for it."""
 
     def log_clock(self) -> Callable[[], int] | None:
-        """Return what stamps the lines of this process's log while a context goes by this time; None for no change."""
+        """Return the clock that stamps this process's log while a context goes by this time; None for no change."""
 
     def fastest_pace(self) -> float:
         """Return the real-time factor of a simulated world that is to go as fast as it can; 0 stands for no limit."""
@@ -305,11 +305,11 @@ class SkewedTime:
         self._base.pass_on()
 
     def stands_still_for_threads(self) -> bool:
-        """Return what holds for the clock behind."""
+        """Return the answer of the clock behind."""
         return self._base.stands_still_for_threads()
 
     def ends_are_news(self) -> bool:
-        """Return what holds for the clock behind."""
+        """Return the answer of the clock behind."""
         return self._base.ends_are_news()
 
     def log_clock(self) -> Callable[[], int] | None:
@@ -317,7 +317,7 @@ class SkewedTime:
         return None if self._base.log_clock() is None else self.now
 
     def fastest_pace(self) -> float:
-        """Return what holds for the clock behind."""
+        """Return the answer of the clock behind."""
         return self._base.fastest_pace()
 
     def random_ids(self, seed: bytes) -> random.Random:

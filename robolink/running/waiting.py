@@ -56,7 +56,7 @@ class Waiting:
         executor: Ending,
         deadline: int | None,
         stop: Callable[[], bool] | None = None,
-        wanted: Callable[[Entity], bool] | None = None,
+        accepts: Callable[[Entity], bool] | None = None,
     ) -> Taken:
         """Wait until something is ready and take it.
 
@@ -70,7 +70,7 @@ class Waiting:
                 queue.poll()
             next_timer = queue.collect_due() if queue.timers else None
             if queue.ready or queue.turns or queue.blocked:
-                taken = self.take(wanted)
+                taken = self.take(accepts)
                 if taken is not None:
                     return taken
             if stop is not None and stop():
@@ -79,7 +79,7 @@ class Waiting:
             usual = deadline is None and not queue.postponed  # then a call less
             arrival = self.pause(inbox, next_timer) if usual else self._wait_for_arrival(deadline, next_timer)
             if arrival is not None:
-                taken = self.take_at_once(arrival, wanted)
+                taken = self.take_at_once(arrival, accepts)
                 if taken is not None:
                     return taken
             if queue.postponed:
@@ -152,9 +152,9 @@ class DeadlockWarning:
 
         def look() -> bool:
             with self._queue.lock:
-                kept = () if self._has_warned else (*self._queue.blocked, *self._queue.ready)
-                waiting = [each for each in kept if is_held_here(each)]
-            held = next((each for each in waiting if stop is None or self._is_asked_here(each.origin)), None)
+                held_back = () if self._has_warned else (*self._queue.blocked, *self._queue.ready)
+                waiting = [each for each in held_back if is_held_here(each)]
+            held = next((each for each in waiting if stop is None or self._is_called_here(each.origin)), None)
             if held is not None:
                 self._has_warned = True
                 logger_of(held).warning(_HELD.format(_named(held.origin)))
@@ -162,7 +162,7 @@ class DeadlockWarning:
 
         return look if stop is None else lambda: stop() or look()
 
-    def _is_asked_here(self, entity: Entity) -> bool:
+    def _is_called_here(self, entity: Entity) -> bool:
         """Return whether it is a service whose answer a client of one of the nodes waits for."""
         name = getattr(entity, "service_name", None)
         return any(each.service_name == name and each.is_waiting for node in self._nodes for each in node.clients)

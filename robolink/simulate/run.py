@@ -96,7 +96,7 @@ def simulate(
         errors = stack.enter_context(_console(watch.log))
         run = _Run(launched, faults or FaultsDescription(), seed or 0, watch, direct)
         run.given = given
-        run.host.wishes = {} if seed is None else {"seed": seed}
+        run.host.preferred_parameters = {} if seed is None else {"seed": seed}
         stack.callback(run.host.close)
         if record:
             stack.callback(run.record(record).close)

@@ -63,7 +63,7 @@ class OneProcess:
             logging.add_handler(self.logs.append)
             stack.callback(logging.remove_handler, self.logs.append)
             stack.enter_context(numpy_seeded(seed))
-            self.host.wishes = {"seed": seed}
+            self.host.preferred_parameters = {"seed": seed}
             self.begin_ns = self.now_ns()
             self.node: Node = self.host.start_node(Tester)
             self._own = next(iter(self.host.programs))

@@ -76,14 +76,14 @@ def _wait(condition: Any, timeout: float | None = None) -> bool:
         return False  # whether a thread of a pool is idle: the pool's own lock is held meanwhile
     if not condition._is_owned():
         raise RuntimeError("cannot wait on un-acquired lock")
-    told = _thread.allocate_lock()
-    told.acquire()
-    condition._waiters.append(told)
+    waiter = _thread.allocate_lock()
+    waiter.acquire()
+    condition._waiters.append(waiter)
     saved = condition._release_save()
     try:
-        wait_until(program.time, lambda: not told.locked(), timeout)
+        wait_until(program.time, lambda: not waiter.locked(), timeout)
     finally:
         condition._acquire_restore(saved)
-        if told.locked() and told in condition._waiters:
-            condition._waiters.remove(told)
-    return not told.locked()
+        if waiter.locked() and waiter in condition._waiters:
+            condition._waiters.remove(waiter)
+    return not waiter.locked()
