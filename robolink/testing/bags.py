@@ -23,7 +23,7 @@ from robolink.logging import get_logger
 from robolink.node import Node
 from robolink.system import waits
 from robolink.system.processes import ROS_DISTRO
-from robolink.testing.stage import Wanted
+from robolink.testing.stage import NodeRequest
 from robolink.wire import NO_HASH, unpack_attachment
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class BagRecording:
         self._now, self._class_of, self._topics = now, class_of, topics
         self._numbers: dict[str, int] = {}
         self._types: dict[str, str] = {}
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._waiting: deque[tuple[Topic, int, Any]] = deque()
         self._metadata: BagMetadata | None = None
         self._failure: Exception | None = None
@@ -124,7 +124,7 @@ class BagRecording:
             self._write()
 
     def _run(self) -> None:
-        """Write what has come, and show it, until the end."""
+        """Write the messages that have come, and show them, until the end."""
         while not self._ends.wait(PERIOD):
             with self._lock:
                 self._write()
@@ -155,8 +155,8 @@ class BagRecording:
         """Add a topic to the bag; return whether it is there in another type: a bag has one for each."""
         known = self._types.setdefault(topic.name, topic.key)
         if known != topic.key:
-            if topic.key not in self._told:
-                self._told.add(topic.key)
+            if topic.key not in self._reported:
+                self._reported.add(topic.key)
                 get_logger("bag").warning(f"topic '{topic.name}': a second type, {topic.type_name}, is not recorded")
             return True
         if topic.name not in self._numbers:
@@ -229,7 +229,7 @@ class Bags:
                 super().__init__(PLAYER)
                 made.append(Player(self, [bag], settings))
 
-        self._stage.start(Wanted(PlayerNode, PLAYER, remappings=remappings))
+        self._stage.start(NodeRequest(PlayerNode, PLAYER, remappings=remappings))
         return made[0]
 
     def record(self, path: str | PathLike[str] | None, topics: Sequence[str] | None) -> BagRecording:

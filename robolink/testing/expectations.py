@@ -61,7 +61,7 @@ def messages_of(
     recorder: Recorder, topic: Topic, class_of: Callable[[Topic], type[Message]], most: int
 ) -> Iterator[Event]:
     """Yield the last messages of a topic."""
-    for heard in list(topic.kept)[-most:]:
+    for heard in list(topic.retained)[-most:]:
         sample = recorder.sample(heard)
         text = _shown(sample.payload, topic, class_of)
         yield Event(heard.time_ns, topic.name, recorder.sender(sample), text, heard.number)
@@ -147,11 +147,11 @@ def nothing_came(
     name: str, ends: Ends, known: Iterable[tuple[str, str]], tried: int, when: str, condition: str = ""
 ) -> str:
     """Return why no message came on a topic: `known` are the existing topics with their types."""
-    wanted = condition or "the condition"
+    criterion = condition or "the condition"
     if tried == 1:
-        return f"the only message on {name} did not fulfil {wanted} {when}"
+        return f"the only message on {name} did not fulfil {criterion} {when}"
     if tried:
-        return f"none of the {tried} messages on {name} fulfilled {wanted} {when}"
+        return f"none of the {tried} messages on {name} fulfilled {criterion} {when}"
     if ends.publishers:
         return f"nothing came on {name} {when}, which {_and(ends.publishers)} may publish"
     if ends.subscribers:

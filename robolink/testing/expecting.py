@@ -112,8 +112,8 @@ class Expecting:
         if not self._run_until(holds, within):
             what = named(condition) or "what was waited for"
             headline = f"{what} did not come true {span(begin, begin + within)}"
-            kept = dict.fromkeys(self._conversation.topics)
-            raise ExpectationError(self._story.failure_text(headline, others=kept or self._story.topics()))
+            involved = dict.fromkeys(self._conversation.topics)
+            raise ExpectationError(self._story.failure_text(headline, others=involved or self._story.topics()))
 
     def result(self, future: Future[T], within: float) -> T:
         """Return the result of a future, or raise its exception."""

@@ -251,26 +251,26 @@ def _name_of(given: Any) -> str:
 def _checked(fault: F) -> F:
     """Return a fault if it is valid: as strict as a file of faults, but one of no effect is none. Raises ValueError."""
     __tracebackhide__ = True
-    told: dict[str, Any] = msgspec.to_builtins(fault)
+    values: dict[str, Any] = msgspec.to_builtins(fault)
     try:
-        msgspec.convert(told, type(fault))
+        msgspec.convert(values, type(fault))
     except msgspec.ValidationError as error:
         what, _, key = str(error).replace("`", "").partition(" - at $.")
         expected = what.partition(", got")[0].replace("Expected", "expected")
-        raise ValueError(f"{key}: {expected}, got {told.get(key)!r}") from None
+        raise ValueError(f"{key}: {expected}, got {values.get(key)!r}") from None
     for key, mistake in mistakes_of(fault) if isinstance(fault, MessageFault) else ():
         if key:
             raise ValueError(f"{key}: {mistake}")
-    for mistake in filter(None, map(mistake_in, _names_in(told))):
+    for mistake in filter(None, map(mistake_in, _names_in(values))):
         raise ValueError(mistake)
     return fault
 
 
-def _names_in(told: Any) -> Iterable[str]:
-    if isinstance(told, str):
-        yield told
-    elif isinstance(told, (list, dict)):
-        for each in told.values() if isinstance(told, dict) else told:
+def _names_in(values: Any) -> Iterable[str]:
+    if isinstance(values, str):
+        yield values
+    elif isinstance(values, (list, dict)):
+        for each in values.values() if isinstance(values, dict) else values:
             yield from _names_in(each)
 
 
@@ -311,15 +311,15 @@ class ProgramFaults:
         for each in nodes:
             running = (name for name, program in self._host.programs.items() if program.state == "running")
             if not is_pattern(each) and any(fits_any((each,), names.get(name, ())) for name in running):
-                told = f"{each} runs already: its clock is wrong once it is started anew"
-                logging.get_logger("robolink.testing").warning(told)
+                warning = f"{each} runs already: its clock is wrong once it is started anew"
+                logging.get_logger("robolink.testing").warning(warning)
 
     def warn_of_right_clock(self, program: str, node: str) -> None:
         """Warn if a clock was to be wrong, but the node's name was not known before it was made with a right one."""
         for each in self._clocks:
             if fits_any(listed(each.node), {node}) and not fits_any(listed(each.node), {program}):
-                told = f"{node} has a right clock: its name was not known before; start it with name='{node}'"
-                logging.get_logger("robolink.testing").warning(told)
+                warning = f"{node} has a right clock: its name was not known before; start it with name='{node}'"
+                logging.get_logger("robolink.testing").warning(warning)
 
     def read(self, path: str | PathLike[str]) -> None:
         """Apply all faults of a file."""

@@ -224,8 +224,8 @@ def bound(function: Callable[..., Any], arguments: Mapping[str, Any]) -> Callabl
 
 def _domain(stack: ExitStack) -> int:
     """Set the environment for tests and processes until the end of `stack`, and return their domain id."""
-    asked = os.environ.get("ROS_DOMAIN_ID", "")
-    domain = int(asked) if asked.isascii() and asked.isdecimal() else stack.enter_context(free_domain())
+    text = os.environ.get("ROS_DOMAIN_ID", "")
+    domain = int(text) if text.isascii() and text.isdecimal() else stack.enter_context(free_domain())
     changed = {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_TRANSPORT": "zenoh"}
     changed["ROBOLINK_NETWORK"] = os.environ.get("ROBOLINK_NETWORK") or NETWORK
     before = {name: os.environ.get(name) for name in changed}
@@ -318,7 +318,7 @@ class LaunchTestClass(pytest.Collector):
         """Start the processes, end them before a class of after the shutdown, and set the class up."""
         assert isinstance(self.parent, LaunchTestModule)
         self.parent.only(self.run)
-        with self._told():
+        with self._errors_shown():
             self.run.begin()
             if _is_after_shutdown(self.tests):
                 self.run.shutdown()
@@ -330,11 +330,11 @@ class LaunchTestClass(pytest.Collector):
                 self.addfinalizer(self._tear_down)
 
     def _tear_down(self) -> None:
-        with self._told():
+        with self._errors_shown():
             bound(self.tests.tearDownClass, self.run.arguments)()
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _errors_shown(self) -> Iterator[None]:
         """Turn an error of the block into one that shows the user's own lines, and unittest's skip into pytest's."""
         try:
             yield
@@ -377,11 +377,11 @@ def _shown(error: BaseException, config: pytest.Config) -> Any:
     if isinstance(error, (RobolinkError, pytest.fail.Exception)):
         return str(error)
     steps = _users(error.__traceback__)
-    kept = pytest.ExceptionInfo.from_exc_info((type(error), error, steps)) if steps is not None else None
-    if kept is None:
+    info = pytest.ExceptionInfo.from_exc_info((type(error), error, steps)) if steps is not None else None
+    if info is None:
         return f"{type(error).__name__}: {error}"
     option = config.option
-    return kept.getrepr(showlocals=option.showlocals, style="short" if option.tbstyle == "short" else "long")
+    return info.getrepr(showlocals=option.showlocals, style="short" if option.tbstyle == "short" else "long")
 
 
 def _bound_method(case: unittest.TestCase, name: str, arguments: Mapping[str, Any]) -> Any:

@@ -16,7 +16,7 @@ from robolink.workspace import find_launch, find_node, two_words
 if TYPE_CHECKING:
     from robolink.launch import Entry
     from robolink.launch.entry import System as LaunchSystem
-    from robolink.testing.stage import Wanted
+    from robolink.testing.stage import NodeRequest
 
 
 def read(file: str | PathLike[str], arguments: Mapping[str, Any], values: Mapping[str, Any]) -> LaunchSystem:
@@ -42,12 +42,12 @@ def _found(file: str) -> Path:
     return find(words) if len(words) == 2 and not Path(file).exists() else find_launch(file)
 
 
-def entry_of(spec: str, wanted: Wanted) -> list[Entry]:
+def entry_of(spec: str, request: NodeRequest) -> list[Entry]:
     """Return the launch entry of one node, as if a launch file had it. Raises NotFoundError, with the nearest name."""
     from robolink.launch import read_launch_file
 
     source = find_node(spec)
-    words = {key: value for key, value in wanted._asdict().items() if key != "what" and value}
+    words = {key: value for key, value in request._asdict().items() if key != "what" and value}
     node = (
         spec if two_words(spec)[1] and not source.spec.endswith(spec) else source.spec
     )  # it has its executable's name

@@ -24,7 +24,7 @@ from robolink.simulate.settings import numpy_seeded
 from robolink.supervisor.policy import Step, is_orderly
 from robolink.testing.faults import Faults, ProgramFaults
 from robolink.testing.launching import entry_of
-from robolink.testing.stage import Failure, Named, Wanted, full
+from robolink.testing.stage import Failure, Named, NodeRequest, full
 from robolink.text.names import meant, the_one
 from robolink.transport.memory import MemoryTransport
 
@@ -88,13 +88,13 @@ class OneProcess:
 
     # Programs
 
-    def start(self, wanted: Wanted) -> Any:
+    def start(self, request: NodeRequest) -> Any:
         """Start a node; return it, or the program of a script."""
         failed = len(self.failures)
         try:
-            if isinstance(wanted.what, type):
-                return self._started_class(wanted.what, wanted)
-            (launched,) = processes(entry_of(str(wanted.what), wanted))
+            if isinstance(request.what, type):
+                return self._started_class(request.what, request)
+            (launched,) = processes(entry_of(str(request.what), request))
             self._register(launched)
             program = self.host.start(launched.name, launched.members, env=launched.env)
             if program.error is not None:
@@ -104,16 +104,16 @@ class OneProcess:
             raise
         return self._node_of(program)
 
-    def _started_class(self, node_class: type[Node], wanted: Wanted) -> Any:
-        called = self._free_name(wanted.namespace, wanted.name or _name_in(node_class) or node_class.__name__)
+    def _started_class(self, node_class: type[Node], request: NodeRequest) -> Any:
+        called = self._free_name(request.namespace, request.name or _name_in(node_class) or node_class.__name__)
         self.program_faults.injector.register(called, [called])
         node = self.host.start_node(
             node_class,
-            name=wanted.name,
-            namespace=wanted.namespace,
-            parameters=wanted.parameters,
-            remappings=wanted.remappings,
-            args=wanted.args,
+            name=request.name,
+            namespace=request.namespace,
+            parameters=request.parameters,
+            remappings=request.remappings,
+            args=request.args,
             called=called,
         )
         self.program_faults.warn_of_right_clock(called, node.get_fully_qualified_name().strip("/"))
@@ -178,7 +178,7 @@ class OneProcess:
 
     @contextmanager
     def _expecting(self, program: str) -> Iterator[None]:
-        """Expect the end of a program: it is no failure, and no rule of a launch file is applied."""
+        """Expect the end of a program: it is not a failure, and no rule of a launch file is applied."""
         self.expected.add(program)
         if not self.host.program(program).is_over:
             supervision = self.supervision_of(program)

@@ -60,11 +60,11 @@ class Parameters:
     def set_value(self, node: str, name: str, value: Any, within: float) -> None:
         """Set a parameter of the node with this full name. An integer serves for a parameter that is a double."""
         own, before = self._node_here(node), self.value_of(node, name, within)
-        asked = WrittenParameter(name, value=value).as_type(Parameter(name, value=before).type_)
+        parameter = WrittenParameter(name, value=value).as_type(Parameter(name, value=before).type_)
         if own is not None:
-            result = own.set_parameters([asked])[0]
+            result = own.set_parameters([parameter])[0]
         else:
-            answer = self._expecting.result(self._client(node, within).set_parameters([asked]), within)
+            answer = self._expecting.result(self._client(node, within).set_parameters([parameter]), within)
             result = answer.results[0]
         if not result.successful:
             raise InvalidParameterValueException(f"{name} of {node}", value, result.reason)

@@ -118,10 +118,10 @@ _HAS_FAILED = pytest.StashKey[bool]()
 
 def _seed_for(item: pytest.Item) -> int:
     """Return a test's seed: the same in every run, wherever its file lies, unless one was asked for."""
-    asked: int | str | None = item.config.getoption(SEED)
-    if isinstance(asked, int):
-        return asked
-    return random.randrange(SEEDS) if asked == RANDOM else zlib.crc32(item.name.encode()) % SEEDS
+    seed: int | str | None = item.config.getoption(SEED)
+    if isinstance(seed, int):
+        return seed
+    return random.randrange(SEEDS) if seed == RANDOM else zlib.crc32(item.name.encode()) % SEEDS
 
 
 def _name_from_here(item: pytest.Item) -> str:

@@ -23,7 +23,7 @@ from robolink.system import clocks, waits
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
 from robolink.testing.launching import entry_of
-from robolink.testing.stage import Failure, Named, Wanted, full
+from robolink.testing.stage import Failure, Named, NodeRequest, full
 from robolink.testing.supervisor_thread import Launch
 from robolink.text.names import the_one
 from robolink.transport.port_sharing import free_domain
@@ -109,18 +109,18 @@ class Processes:
 
     # Programs
 
-    def start(self, wanted: Wanted) -> RemoteNode:
+    def start(self, request: NodeRequest) -> RemoteNode:
         """Start a node and wait until it is made; return its stand-in. Raises NodeFailure if it ends before."""
         __tracebackhide__ = True
-        called = self._free_name(wanted)
+        called = self._free_name(request)
         before = set(self.node.context.graph.nodes())
-        self._begin(Launch(entry_of(_spec(wanted.what), wanted), self.domain, NETWORK, self._exits.put, called))
+        self._begin(Launch(entry_of(_spec(request.what), request), self.domain, NETWORK, self._exits.put, called))
         return self._node(called, before)
 
-    def _free_name(self, wanted: Wanted) -> str:
+    def _free_name(self, request: NodeRequest) -> str:
         """Return a free name for a program: that of its node, if it is given one."""
-        own = wanted.name or (wanted.what.__name__ if isinstance(wanted.what, type) else Path(wanted.what).stem)
-        name, taken = f"{wanted.namespace.strip('/')}/{own}".lstrip("/"), self._all_names()
+        own = request.name or (request.what.__name__ if isinstance(request.what, type) else Path(request.what).stem)
+        name, taken = f"{request.namespace.strip('/')}/{own}".lstrip("/"), self._all_names()
         names = (name if number == 1 else f"{name}_{number}" for number in range(1, len(taken) + 2))
         return next(each for each in names if each not in taken)
 

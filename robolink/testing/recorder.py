@@ -26,8 +26,8 @@ from robolink.wire import (
     unpack_attachment,
 )
 
-KEPT = 20
-"""Count of messages kept of each topic."""
+RETAINED = 20
+"""Count of messages retained of each topic."""
 
 _LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -48,7 +48,7 @@ class Topic:
         self.type_name, self.type_hash = token.type_name, token.type_hash
         self.key = format_key(DataKey(token.domain, token.name, token.type_name, token.type_hash))
         self.count = 0
-        self.kept: deque[Recorded] = deque(maxlen=KEPT)
+        self.retained: deque[Recorded] = deque(maxlen=RETAINED)
 
 
 class Recorder:
@@ -105,19 +105,21 @@ class Recorder:
         return next(self._numbers)
 
     def since(self, name: str, number: int, *, but: str) -> list[tuple[Topic, Sample]]:
-        """List what is still kept of a topic from this number on, in the order in which it was heard.
+        """List what is still retained of a topic from this number on, in the order in which it was heard.
 
         What the node `but` has published is left out.
         """
-        kept = [(each, topic) for topic in self.named(name) for each in topic.kept.copy() if each.number >= number]
-        kept.sort(key=lambda one: one[0].number)
-        found = [(topic, self.sample(each)) for each, topic in kept]
+        retained = [
+            (each, topic) for topic in self.named(name) for each in topic.retained.copy() if each.number >= number
+        ]
+        retained.sort(key=lambda one: one[0].number)
+        found = [(topic, self.sample(each)) for each, topic in retained]
         return [each for each in found if self.sender(each[1]) != but]
 
     def after(self, name: str, sample: Sample) -> int:
         """Return the number from which on all was heard later than this sample."""
-        kept = [each for topic in self.named(name) for each in topic.kept.copy()] if sample.attachment else []
-        numbers = (each.number for each in kept if self.sample(each).attachment == sample.attachment)
+        retained = [each for topic in self.named(name) for each in topic.retained.copy()] if sample.attachment else []
+        numbers = (each.number for each in retained if self.sample(each).attachment == sample.attachment)
         return next(numbers, next(self._numbers)) + 1
 
     def follow_topics(self, follower: Callable[[Topic], object]) -> None:
@@ -137,7 +139,7 @@ class Recorder:
         self._transport.subscribe(topic.key, _LATCHED, sink)
 
     def sample_of(self, arrived: Any) -> Sample:
-        """Return what arrived."""
+        """Return the sample of an arrival."""
         return self._transport.read(arrived)
 
     def sample(self, heard: Recorded) -> Sample:
@@ -169,7 +171,7 @@ class Recorder:
         return True
 
     def _record(self, topic: Topic) -> None:
-        now, number, keep = self._now, self._numbers.__next__, topic.kept.append
+        now, number, keep = self._now, self._numbers.__next__, topic.retained.append
 
         def note(arrived: Any) -> None:
             if not topic.count:
@@ -200,7 +202,7 @@ class TopicQueue:
         self._handles.append(self._transport.subscribe(topic.key, _LATCHED, lambda arrived: put((topic, arrived))))
 
     def take(self) -> list[tuple[Topic, Sample]]:
-        """Return what has come since the last call, in its order."""
+        """Return the samples that have come since the last call, in its order."""
         taken = []
         while self._arrived:
             topic, arrived = self._arrived.popleft()

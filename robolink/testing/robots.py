@@ -105,21 +105,21 @@ class RemoteRobot:
 
         if self._last is None:
             return Velocity(0.0, 0.0)
-        told = self._last.twist.twist
-        return Velocity(told.linear.x, told.angular.z, told.linear.y)
+        twist = self._last.twist.twist
+        return Velocity(twist.linear.x, twist.angular.z, twist.linear.y)
 
     def update(self, payload: bytes) -> None:
         """Update its state from an Odometry."""
-        told: Odometry = deserialize_message(payload, Odometry)
+        odometry: Odometry = deserialize_message(payload, Odometry)
         if self._last is not None:
-            self.driven += _way(self._last, told)
-        x, y, _ = pose_of(told.pose.pose)
-        self._last, self._area = told, (self._area or Area(x, y, x, y)).grown(x, y)
+            self.driven += _way(self._last, odometry)
+        x, y, _ = pose_of(odometry.pose.pose)
+        self._last, self._area = odometry, (self._area or Area(x, y, x, y)).grown(x, y)
 
     def update_contacts(self, payload: bytes) -> None:
         """Update its contacts from a DiagnosticArray."""
-        told: DiagnosticArray = deserialize_message(payload, DiagnosticArray)
-        found = [int(value.value) for each in told.status for value in each.values if value.key == "contacts"]
+        diagnostics: DiagnosticArray = deserialize_message(payload, DiagnosticArray)
+        found = [int(value.value) for each in diagnostics.status for value in each.values if value.key == "contacts"]
         self.contacts = found[0] if found else self.contacts
 
 

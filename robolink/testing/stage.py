@@ -41,7 +41,7 @@ Startable: TypeAlias = "type[Node] | Callable[[], object] | str | Path"
 
 
 def startable(what: Any) -> type[Node] | str | Path:
-    """Return what can be started: a class, or the name by which `robolink run` finds it. Raises TypeError."""
+    """Return a startable thing: a class, or the name by which `robolink run` finds it. Raises TypeError."""
     __tracebackhide__ = True
     from robolink.node import Node
 
@@ -55,7 +55,7 @@ def startable(what: Any) -> type[Node] | str | Path:
     raise TypeError(f"{takes}, or a main() of one, not {what!r}")
 
 
-class Wanted(NamedTuple):
+class NodeRequest(NamedTuple):
     """A node to start, with the arguments of its start."""
 
     what: type[Node] | str | Path
@@ -95,7 +95,7 @@ class Stage(Protocol):
     def session(self) -> Transport:
         """Open a session on the network of the system that no fault touches."""
 
-    def start(self, wanted: Wanted) -> Any:
+    def start(self, request: NodeRequest) -> Any:
         """Start a node; return it, or its stand-in."""
 
     def launch(self, system: LaunchSystem, faults: str | PathLike[str] | None = None) -> None:

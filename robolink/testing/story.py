@@ -98,7 +98,7 @@ class Story:
         return [f"nobody listens to {each}{near(each, heard)}" for each in vain]
 
     def whole(self) -> str:
-        """Return what was last published on each topic, what was logged, what failed, and how to replay it."""
+        """Return the story: what was last published on each topic, logged, failed, and how to replay it."""
         return self.failure_text(f"the system after {self.time:.3f} s", others=self.topics())
 
     def topics(self) -> list[str]:
@@ -202,7 +202,7 @@ class Conversation:
 
     def __init__(self, node: Node, story: Story) -> None:
         self._node, self._story = node, story
-        self._kept: list[tuple[TopicQueue, list[Any], type[Message] | None]] = []
+        self._subscriptions: list[tuple[TopicQueue, list[Any], type[Message] | None]] = []
         self._publishers: dict[tuple[str, type[Message]], Publisher[Any]] = {}
 
     def publish(self, topic: str, message: Message, qos: QoSProfile | int) -> None:
@@ -219,20 +219,20 @@ class Conversation:
     def keep(self, topic: str, given: type[Message] | None) -> list[Any]:
         """Return a list that fills at each `hear` with what is published from now on, of the class `given` if any."""
         heard: list[Any] = []
-        self._kept.append((self._story.recorder.listen(self._node.resolve_topic_name(topic)), heard, given))
+        self._subscriptions.append((self._story.recorder.listen(self._node.resolve_topic_name(topic)), heard, given))
         self.hear()
         return heard
 
     def hear(self) -> None:
         """Move messages that have arrived into the lists."""
-        for queue, heard, given in self._kept:
+        for queue, heard, given in self._subscriptions:
             heard.extend(self._story.decoded(topic, sample.payload, given) for topic, sample in queue.take())
 
     @property
     def topics(self) -> list[str]:
         """The topics that are recorded, then those that the test publishes."""
-        return [*(queue.name for queue, _, _ in self._kept), *(name for name, _ in self._publishers)]
+        return [*(queue.name for queue, _, _ in self._subscriptions), *(name for name, _ in self._publishers)]
 
     def close(self) -> None:
         """Stop recording."""
-        self._kept.clear()
+        self._subscriptions.clear()

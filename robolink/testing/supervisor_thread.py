@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from robolink.launch.entry import Direct
     from robolink.supervisor.director import Director
 
-TOLD_WITHIN = 5.0
+ANSWER_TIMEOUT = 5.0
 """Timeout of a supervisor's answer to a request, in seconds."""
 
 
@@ -134,7 +134,7 @@ class Launch:
         if sys.platform != "win32":
             os.killpg(pid, signal.SIGSTOP)
         self.supervisor.stop_one(name)
-        deadline = clocks.monotonic() + TOLD_WITHIN
+        deadline = clocks.monotonic() + ANSWER_TIMEOUT
         while self._status(name).state == "running" and clocks.monotonic() < deadline:
             time.sleep(0.001)
         with suppress(ProcessLookupError):
@@ -146,7 +146,7 @@ class Launch:
     def restart(self, name: str) -> None:
         """Start a process anew; one whose system has ended with it gets a system of its own."""
         if all(each.pid is None for each in self.supervisor.status()):
-            waits.join(self.thread, TOLD_WITHIN)
+            waits.join(self.thread, ANSWER_TIMEOUT)
         if self.thread.is_alive():
             self.supervisor.restart(name)
             return

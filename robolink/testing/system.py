@@ -16,7 +16,7 @@ from robolink.testing.expectations import ClosedError, ExpectationError
 from robolink.testing.expecting import Expecting, Failures
 from robolink.testing.parameters import Parameters
 from robolink.testing.robots import RemoteRobots, SimulatedRobot, chosen
-from robolink.testing.stage import Failure, Named, Startable, Wanted, full, startable
+from robolink.testing.stage import Failure, Named, NodeRequest, Startable, full, startable
 from robolink.testing.stages import make_stage
 from robolink.testing.story import Conversation, Story
 
@@ -123,9 +123,9 @@ class System:
         """
         __tracebackhide__ = True
         self._check_open()
-        wanted = Wanted(startable(what), name, namespace, parameters or {}, remappings or {}, tuple(args))
-        started = self._stage.start(wanted)
-        self._parameters.note_given(started, wanted.parameters)
+        request = NodeRequest(startable(what), name, namespace, parameters or {}, remappings or {}, tuple(args))
+        started = self._stage.start(request)
+        self._parameters.note_given(started, request.parameters)
         self._begin()
         return started
 

@@ -20,7 +20,7 @@ from robolink.message.one_line import WIDTH, short
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.serialization import deserialize_message
 from robolink.testing.expectations import Ends, Event, messages_of, no_such, nothing_came, seconds, table
-from robolink.testing.recorder import KEPT, Recorder
+from robolink.testing.recorder import RETAINED, Recorder
 from robolink.text.names import near
 from robolink.transport.memory import Bus, MemoryTransport
 from tests.support.filled import filled
@@ -97,7 +97,7 @@ def network() -> tuple[Context, Recorder]:
 
 def numbers(recorder: Recorder, topic: str) -> list[int]:
     (found,) = recorder.named(topic)
-    return [deserialize_message(recorder.sample(each).payload, Int32).data for each in found.kept]
+    return [deserialize_message(recorder.sample(each).payload, Int32).data for each in found.retained]
 
 
 def test_the_last_messages_of_each_topic_are_kept_and_nobody_sees_the_listener(
@@ -106,14 +106,14 @@ def test_the_last_messages_of_each_topic_are_kept_and_nobody_sees_the_listener(
     context, recorder = network
     with context, Node("talker", context=context, namespace="/ada") as node:
         publisher = node.create_publisher(Int32, "count", 10)
-        for each in range(2 * KEPT):
+        for each in range(2 * RETAINED):
             publisher.publish(Int32(data=each))
-        assert numbers(recorder, "/ada/count") == list(range(KEPT, 2 * KEPT))
-        assert recorder.named("/ada/count")[0].count == 2 * KEPT
+        assert numbers(recorder, "/ada/count") == list(range(RETAINED, 2 * RETAINED))
+        assert recorder.named("/ada/count")[0].count == 2 * RETAINED
         assert recorder.named("/count") == []
         assert publisher.get_subscription_count() == 0
         assert node.get_fully_qualified_node_names() == ["/ada/talker"]
-        heard = recorder.named("/ada/count")[0].kept[0]
+        heard = recorder.named("/ada/count")[0].retained[0]
         assert (heard.time_ns, recorder.sender(recorder.sample(heard))) == (5, "/ada/talker")
 
 
