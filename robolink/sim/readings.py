@@ -16,7 +16,7 @@ class Scan(NamedTuple):
         angle_increment: Angle from beam to beam, in radians.
         range_min: Shortest range that is measured, in metres.
         range_max: Longest range that is measured, in metres.
-        ranges: Ranges in metres, float64; +inf is no return, -inf is nearer than `range_min`.
+        ranges: Ranges in metres, float64; +inf means no return, -inf is nearer than `range_min`.
         intensities: Shares of the light that came back, 0 to 1, if the lidar has them.
     """
 

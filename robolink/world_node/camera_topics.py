@@ -145,7 +145,7 @@ class CameraTopics:
             each.publish(stamp.beginning + self._info_begin)
 
     @property
-    def is_wanted(self) -> bool:
+    def is_needed(self) -> bool:
         """True if an image, compressed or of depths, is to be rendered."""
         return self._wants(self._image) or self._wants(self._depth) or self._wants_compressed
 

@@ -95,12 +95,12 @@ class RobotCommands:
         if reason := joint_refusal(command):
             self._refuse("joint_command", f"ignored a joint_command{reason}")
             return
-        wanted = dict(zip(command.name, command.velocity, strict=True))
-        if unknown := [name for name in wanted if name not in self.motors]:
-            asked = f"'{shown(unknown[0])}', which the robot has not{nearest(unknown[0], self.motors)}"
+        speeds = dict(zip(command.name, command.velocity, strict=True))
+        if unknown := [name for name in speeds if name not in self.motors]:
+            refused = f"'{shown(unknown[0])}', which the robot has not{nearest(unknown[0], self.motors)}"
             known = ", ".join(self.motors)
-            self._refuse("motor", f"ignored a joint_command's motor {asked}; there is: {known}")
-        if known_ones := {name: speed for name, speed in wanted.items() if name in self.motors}:
+            self._refuse("motor", f"ignored a joint_command's motor {refused}; there is: {known}")
+        if known_ones := {name: speed for name, speed in speeds.items() if name in self.motors}:
             self.robot.turn_wheels(known_ones)
             self._steps_left = self._timeout + 1  # `step` is called once before the command's own first step
 

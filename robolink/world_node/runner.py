@@ -95,9 +95,9 @@ REPORTED = 5
 
 
 class Rate(NamedTuple):
-    """The real-time factor: as asked for (0 is as fast as possible), and as measured; None while it is not known."""
+    """The real-time factor: as requested (0 is as fast as possible), and as measured; None while it is not known."""
 
-    asked: float
+    requested: float
     measured: float | None
     running: bool = True
 
@@ -107,7 +107,7 @@ def diagnostics(node_name: str, simulation: Simulation, rate: Rate) -> Diagnosti
     level, message = judged(rate)
     world = simulation.world
     values = {
-        "asked": f"{rate.asked:g}",
+        "asked": f"{rate.requested:g}",
         "measured": "" if rate.measured is None else f"{rate.measured:.3g}",
         "steps": str(world.steps),
         "simulation time": f"{world.time_ns / 1e9:.3f}",
@@ -131,8 +131,11 @@ def judged(rate: Rate) -> tuple[bytes, str]:
         return DiagnosticStatus.OK, "paused"
     if rate.measured is None:
         return DiagnosticStatus.OK, "just started"
-    if rate.measured < BEHIND * rate.asked:
-        return DiagnosticStatus.WARN, f"falls behind: {rate.measured:.3g} times real time, {rate.asked:g} is asked for"
+    if rate.measured < BEHIND * rate.requested:
+        return (
+            DiagnosticStatus.WARN,
+            f"falls behind: {rate.measured:.3g} times real time, {rate.requested:g} is asked for",
+        )
     return DiagnosticStatus.OK, f"{rate.measured:.3g} times real time"
 
 
@@ -180,7 +183,7 @@ class Runner:
         self.steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=node.context.time)
         self._node, self._meter = node, RateMeter()
         self._simulated = 0
-        self._asked_for: Future[bool] | None = None
+        self._step_request: Future[bool] | None = None
         self._now = node.context.time.steady
         self._pace = self._new_pace(rtf)
         self._timer = node.create_timer(self._pace.period, self._on_tick, clock=self.steady)
@@ -208,9 +211,9 @@ class Runner:
     def advance(self, steps: int) -> Future[bool]:
         """Make a number of steps while paused; the result is True when they are made, False if stopped before."""
         self._answer(False)
-        self._asked_for = Future()
+        self._step_request = Future()
         self._set_off(0.0, steps)
-        return self._asked_for
+        return self._step_request
 
     def measured(self) -> Rate:
         """Return the real-time factor, measured over the last calls of this, a second apart."""
@@ -231,7 +234,7 @@ class Runner:
     def _on_tick(self) -> None:
         """Make the steps that are due, at most one turn of them."""
         pace, simulation = self._pace, self.simulation
-        if not (self.running or self._asked_for):
+        if not (self.running or self._step_request):
             return
         steps, given_up = pace.due(self._now())
         for _ in range(steps):
@@ -248,6 +251,6 @@ class Runner:
 
     def _answer(self, made: bool) -> None:
         """Set the result of `advance`: True if the steps have been made, False if they never will be."""
-        waiting, self._asked_for = self._asked_for, None
+        waiting, self._step_request = self._step_request, None
         if waiting is not None:
             waiting.set_result(made)

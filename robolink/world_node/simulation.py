@@ -100,7 +100,7 @@ class Simulation:
 
     def _publish_shot(self, camera: CameraTopics, shot: Shot, stamp: Stamp) -> None:
         camera.publish_infos(stamp)
-        if not camera.is_wanted:
+        if not camera.is_needed:
             return
         if self._darkroom is None:
             camera.publish(shot, stamp)
@@ -152,17 +152,17 @@ class Simulation:
     def _open_topics(self) -> None:
         """Create the topics of each robot of the world, and destroy all others."""
         robots = self.world.robots
-        kept = {
+        unchanged = {
             name: topics
             for name, topics in self.robots.items()
             if name in robots and robots[name].description == topics.robot.description
         }
         for name, topics in self.robots.items():
-            if name not in kept:
+            if name not in unchanged:
                 topics.close()
             elif topics.robot is not robots[name]:
                 topics.follow(robots[name])
-        self.robots = {name: kept.get(name) or self._topics(robot) for name, robot in robots.items()}
+        self.robots = {name: unchanged.get(name) or self._topics(robot) for name, robot in robots.items()}
         self._state_steps = math.gcd(*(topics.state_steps for topics in self.robots.values())) or 1
         self._wheeled = [topics.commands for topics in self.robots.values() if topics.commands.motors]
         self._publish_static()

@@ -307,7 +307,7 @@ def city(random: np.random.Generator, count: int) -> Array:
 
 @pytest.mark.parametrize("kept", [10**6, 100])
 def test_a_large_map_is_seen_exactly(kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.sim.sensing.scene._KEPT", kept)
+    monkeypatch.setattr("robolink.sim.sensing.scene._MOST_COLUMNS", kept)
     random = np.random.default_rng(10)
     segments, beams = city(random, 2000), Beams(Lidar("scan", beams=60, range=(0.1, 60.0)))
     around, poses = standing(segments, NO_CIRCLES), random.uniform(-500, 500, (20, 3))

@@ -32,7 +32,7 @@ class Wheels:
         self._robot, self._limits = robot, [wheel.speed_max for wheel in wheels]
         self._rows = [_row(wheel) for wheel in wheels]
         self._inverse = _pseudo_inverse(self._rows, sideways)
-        self._told = dict.fromkeys(self.names, 0.0)
+        self._speeds = dict.fromkeys(self.names, 0.0)
 
     def turn(self, speeds: Mapping[str, float]) -> Velocity:
         """Set the speeds of motors, in rad/s; return the robot's speeds that all of them together ask for.
@@ -40,16 +40,16 @@ class Wheels:
         Raises `NotFoundError` when there is no such motor, and changes none then.
         """
         for name in speeds:
-            if name not in self._told:
+            if name not in self._speeds:
                 raise NotFoundError("motor", name, self.names, f"robot '{self._robot}'")
-        self._told.update(speeds)
-        cut = [max(-most, min(most, self._told[name])) for name, most in zip(self.names, self._limits, strict=True)]
+        self._speeds.update(speeds)
+        cut = [max(-most, min(most, self._speeds[name])) for name, most in zip(self.names, self._limits, strict=True)]
         v, s, w = (math.fsum(share * speed for share, speed in zip(row, cut, strict=True)) for row in self._inverse)
         return Velocity(v, w, s)
 
     def forget(self) -> None:
         """Set all motors to 0: a velocity command has come."""
-        self._told = dict.fromkeys(self.names, 0.0)
+        self._speeds = dict.fromkeys(self.names, 0.0)
 
     def speeds(self, robot: Velocity) -> list[float]:
         """Return the speed of each wheel in rad/s from a robot's speeds; or its angle in rad from its way."""
@@ -92,16 +92,16 @@ class Driver:
         limits = _limits(robot.drive, body, robot.shape.outer_radius(), dt)
         self.motion: Motion[float] = motion_of_one(dt, robot.pose, limits, wheeled=bool(robot.wheels))
 
-    def command(self, wanted: Velocity, step: int) -> None:
+    def command(self, velocity: Velocity, step: int) -> None:
         """Set the target velocity from `step` on, cut to the limits; it holds for the drive's timeout.
 
         Raises `CommandError` when it is not finite.
         """
-        if not all(map(math.isfinite, wanted)):
-            v, w, sideways = wanted
+        if not all(map(math.isfinite, velocity)):
+            v, w, sideways = velocity
             raise CommandError(f"expected a finite velocity, got v={v:g} m/s, w={w:g} rad/s, sideways={sideways:g} m/s")
         self._wheels.forget()
-        self._aim(self._within_limits(wanted))
+        self._aim(self._within_limits(velocity))
         self.motion.deadline = self.motion.expiry = step + self._timeout_steps
 
     def turn_wheels(self, speeds: Mapping[str, float]) -> None:
@@ -120,8 +120,8 @@ class Driver:
         wheels, way = self._wheels, Velocity(motion.rolled, motion.turned, motion.slid)
         return tuple(map(WheelState, wheels.names, wheels.speeds(way), wheels.speeds(twist)))
 
-    def _within_limits(self, wanted: Velocity) -> Velocity:
-        drive, (v, w, s) = self._drive, wanted
+    def _within_limits(self, velocity: Velocity) -> Velocity:
+        drive, (v, w, s) = self._drive, velocity
         if drive.type == "omni":
             share = min(1.0, drive.v_max / max(math.sqrt(v * v + s * s), drive.v_max))
             return Velocity(v * share, clipped(w, drive.w_max), s * share)
@@ -129,15 +129,15 @@ class Driver:
             return self._slowed(Velocity(v, w))
         return Velocity(clipped(v, drive.v_max), clipped(w, drive.w_max))
 
-    def _slowed(self, wanted: Velocity) -> Velocity:
+    def _slowed(self, velocity: Velocity) -> Velocity:
         """Multiply all speeds by one factor, so that the way stays the same and none is too fast."""
-        v_max, w_max, (v, w, s) = self._drive.v_max, self._drive.w_max, wanted
+        v_max, w_max, (v, w, s) = self._drive.v_max, self._drive.w_max, velocity
         share = min(v_max / max(math.sqrt(v * v + s * s), v_max), w_max / max(abs(w), w_max))
         return Velocity(v * share, w * share, s * share)
 
-    def _aim(self, wanted: Velocity) -> None:
+    def _aim(self, velocity: Velocity) -> None:
         """Set the targets; a car that stops keeps its steering angle."""
-        motion, drive, (v, w, s) = self.motion, self._drive, wanted
+        motion, drive, (v, w, s) = self.motion, self._drive, velocity
         motion.target_v, motion.target_s, motion.target_w = v, s, w
         if drive.type == "ackermann" and v:
             motion.target_steer = clipped(math.atan(drive.wheelbase * w / v), drive.steer_max)

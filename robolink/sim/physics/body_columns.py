@@ -116,14 +116,14 @@ class BodyColumns(BodyRows):
         return self._writes_as_expected()
 
     def _writes_as_expected(self) -> bool:
-        wanted = np.arange(3.0 * len(self._bodies)).reshape(-1, 3)
-        self._forces[self._rows] = wanted
+        expected = np.arange(3.0 * len(self._bodies)).reshape(-1, 3)
+        self._forces[self._rows] = expected
         pymunk.batch.set_space_bodies(self._space, _WRITE, self._write_buffer)
         found = [(*body.force, body.torque) for body in self._bodies]
         self._forces[:] = 0.0
         for body in self._bodies:
             body.force, body.torque = (0.0, 0.0), 0.0
-        return np.array_equal(found, wanted)
+        return np.array_equal(found, expected)
 
 
 _AVAILABLE = hasattr(pymunk.batch, "get_space_bodies") and hasattr(pymunk.batch, "set_space_bodies")

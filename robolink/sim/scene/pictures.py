@@ -17,8 +17,8 @@ from robolink.system.files import read_plain
 MOST_PIXELS = 8_000_000
 """Most pixels of a picture: 4,000 x 2,000."""
 
-MOST_KEPT = 16
-"""Most pictures that are kept in memory."""
+MOST_CACHED = 16
+"""Most pictures that are cached in memory."""
 
 _known: dict[str, tuple[tuple[int, int], Picture]] = {}
 """The last pictures by path, each with its file's time and size; the latest is the last."""
@@ -53,12 +53,12 @@ def read_picture(path: str) -> Picture:
     with _lock:
         _known.pop(path, None)
         _known[path] = known
-        while len(_known) > MOST_KEPT:
+        while len(_known) > MOST_CACHED:
             del _known[next(iter(_known))]
     return known[1]
 
 
-def kept_picture(path: str) -> Picture:
+def cached_picture(path: str) -> Picture:
     """Return a picture as `read_picture` does, or as it was if its file has gone or changed for the worse since then.
 
     A world that runs keeps its signs, whatever happens to their files.

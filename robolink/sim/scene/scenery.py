@@ -17,7 +17,7 @@ from robolink.sim.colours import Colour, colour_of
 from robolink.sim.description import Obstacle, RobotDescription, Sign, Wall, WorldDescription
 from robolink.sim.quantities import Pose
 from robolink.sim.scene.floor import painted_floor
-from robolink.sim.scene.pictures import kept_picture
+from robolink.sim.scene.pictures import cached_picture
 from robolink.sim.scene.signs import sign_surfaces
 from robolink.sim.scene.solids import HERE, Picture, Scenery, Surfaces, solid, upright
 
@@ -49,7 +49,7 @@ def scenery(description: WorldDescription) -> Scenery:
         ImageError: if a picture is none.
         ValueError: for a colour or a tag that is none, which `load_world` refuses.
     """
-    read = cache(kept_picture)
+    read = cache(cached_picture)
     fixed = [each for each in description.obstacles if not _moves(each)]
     standing = _joined([_walls(description.walls), *(_obstacle(each, each.start.place) for each in fixed)])
     signs = [sign_surfaces(each, read, standing) for each in description.signs]
@@ -70,7 +70,7 @@ def scenery(description: WorldDescription) -> Scenery:
 
 def robot_surfaces(robot: RobotDescription) -> Surfaces:
     """Return the surfaces of a robot in its own frame. Raises as `scenery`."""
-    return _robot(robot, kept_picture)
+    return _robot(robot, cached_picture)
 
 
 def wall_colour(wall: Wall) -> Colour:

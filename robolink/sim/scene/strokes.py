@@ -24,7 +24,7 @@ _DEEPEST = 6
 class Stroke(NamedTuple):
     """A part of a line: its points, and whether it is a ring, whose last point is its first.
 
-    The ends of one that is no ring are square.
+    The ends of one that is not a ring are square.
     """
 
     points: list[Point]

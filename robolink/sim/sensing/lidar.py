@@ -48,7 +48,7 @@ _BLOCK = 8
 _NEAR = 1e-6
 """Share of a range, and distance in metres, within which a circle is not taken to be hidden."""
 
-_KEPT = 4 << 20
+_FREED = 4 << 20
 """Size of the block that `_keep_memory` frees, in bytes."""
 
 
@@ -81,7 +81,7 @@ def _keep_memory() -> None:
     It gives back to the system what is free beyond twice the largest block that was ever freed; else the pages of
     each batch would be requested again, which takes as long as a third of its arithmetic.
     """
-    np.empty(_KEPT, dtype=np.uint8)
+    np.empty(_FREED, dtype=np.uint8)
 
 
 def distances(beams: Beams, sensor: Pose, surroundings: Surroundings, own: int = NOBODY) -> Array:

@@ -86,8 +86,8 @@ _FEW = 64
 _TILES_ACROSS = 6
 """Number of tiles in the length of the reach: more of them fit closer and are left sooner."""
 
-_KEPT = 1_000_000
-"""Most columns that are kept in all tiles together: 64 MB."""
+_MOST_COLUMNS = 1_000_000
+"""Most columns that are stored in all tiles together: 64 MB."""
 
 
 def columns(segments: Array, reflectances: Array) -> Array:
@@ -123,7 +123,7 @@ class Tiles:
     def _remember(self, tile: tuple[int, int, float], side: float) -> Array:
         column, row, reach = tile
         found = self._within((column + 0.5) * side, (row + 0.5) * side, reach + 0.75 * side)  # 0.71: to its corners
-        while self._near and self._count + found.shape[1] > _KEPT:
+        while self._near and self._count + found.shape[1] > _MOST_COLUMNS:
             self._count -= self._near.pop(next(iter(self._near))).shape[1]
         self._count += found.shape[1]
         self._near[tile] = found
@@ -323,7 +323,7 @@ class Scene:
         return self._places
 
     def sight(self, body: pymunk.Body) -> tuple[Setting, Array]:
-        """Return what a camera on a body sees, all but this body itself, and the present places of what moves."""
+        """Return the setting that a camera on a body sees, without this body, and the present places of what moves."""
         self.poses()
         number = self.number(body)
         things = [(row, each.thing) for row, each in enumerate(self._moving.values()) if each.number != number]

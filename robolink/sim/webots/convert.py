@@ -102,13 +102,13 @@ def _settings(information: Node | None) -> Settings:
 def _robots(found: Found, dt: float, floor: float) -> list[Converted]:
     """Convert the robots, and leave in `found` those that there are; `floor` is the height of the floor."""
     converted: list[Converted] = []
-    kept = []
+    remaining = []
     for node, placement in found.robots:
         names = [each.description.name for each in converted]
         if made := robot(found, node, placement, names, dt, floor):
             converted.append(made)
-            kept.append((node, placement))
-    found.robots = kept
+            remaining.append((node, placement))
+    found.robots = remaining
     return converted
 
 
@@ -187,16 +187,16 @@ def _is_fixed(path: str, things: list[Standing]) -> bool:
 
 
 def _moved(things: list[Standing], inside: set[int], floor: float) -> tuple[list[Standing], list[str]]:
-    kept, notes = [], []
+    remaining, notes = [], []
     for index, each in enumerate(things):
         if index not in inside:
-            kept.append(each)
+            remaining.append(each)
         elif min(part.bottom for part in each.thing.parts) > floor + FLAT:
             notes.append(f"{each.thing.node.called} stands on something else: left out")
         else:
-            kept.append(Standing(msgspec.structs.replace(each.obstacle, mass=None), each.thing))
+            remaining.append(Standing(msgspec.structs.replace(each.obstacle, mass=None), each.thing))
             notes.append(f"{each.thing.node.called} starts inside of something else: nothing can push it")
-    return kept, notes
+    return remaining, notes
 
 
 def _placed(path: str, message: str, things: list[Standing], robots: Sequence[Node], name: str) -> DocumentError:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from robolink.image.codecs import png_of
 from robolink.sim.maps.image import ImageError
 from robolink.sim.scene import pictures
-from robolink.sim.scene.pictures import kept_picture, read_picture
+from robolink.sim.scene.pictures import cached_picture, read_picture
 
 GREEN = np.tile(np.array([10, 200, 30], np.uint8), (3, 4, 1))
 
@@ -61,18 +61,18 @@ def test_a_changed_file_is_read_again(saved: str) -> None:
 
 def test_a_picture_whose_file_has_gone_is_kept_for_the_world_that_runs(saved: str) -> None:
     with pytest.raises(FileNotFoundError):
-        kept_picture(saved + "x")
+        cached_picture(saved + "x")
     before = read_picture(saved)
     Path(saved).write_bytes(b"no picture")
     with pytest.raises(ImageError):
         read_picture(saved)
-    assert kept_picture(saved) is before
+    assert cached_picture(saved) is before
     Path(saved).unlink()
-    assert kept_picture(saved) is before
+    assert cached_picture(saved) is before
 
 
 def test_few_pictures_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pictures, "MOST_KEPT", 2)
+    monkeypatch.setattr(pictures, "MOST_CACHED", 2)
     paths = [str(tmp_path / f"{each}.png") for each in range(3)]
     for path in paths:
         Path(path).write_bytes(png_of(GREEN))
