@@ -12,22 +12,13 @@ MOST = {
     "benchmarks": 1,
     "nodes": 1,
     "robolink/cli": 4,
-    "robolink/counterparts": 11,
-    "robolink/host": 13,
     "robolink/learn": 3,
-    "robolink/message": 12,
     "robolink/networks": 15,
-    "robolink/node_parts": 3,
-    "robolink/running": 13,
     "robolink/security": 2,
-    "robolink/sim": 11,
-    "robolink/simulate": 1,
-    "robolink/testing": 27,
     "robolink/text": 1,
     "robolink/transport": 26,
     "robolink/wire": 1,
     "robolink/workspace": 2,
-    "robolink/world_node": 6,
 }
 """Most old words of a room, none where it is not listed. Lower a number when `python -m tools.words` shows less."""
 
