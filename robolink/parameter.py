@@ -61,7 +61,7 @@ class Parameter(Generic[AllowableParameterValueT]):
             raise TypeError(f"the given value is not {what}: {parameter_value!r}")
 
         def check(self, parameter_value: AllowableParameterValue) -> bool:
-            """True if a `parameter_value` is of this type; an int is not a DOUBLE, but a bool is an INTEGER, as in rclpy."""
+            """True if `parameter_value` is of this type: an int is not a DOUBLE, a bool is an INTEGER, as in rclpy."""
             if self is Parameter.Type.NOT_SET:
                 return parameter_value is None
             if self.name in _SCALARS:
