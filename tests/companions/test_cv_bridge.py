@@ -120,7 +120,7 @@ def refusals() -> dict[str, Any]:
         ),
         "no encoding has values of int64": lambda: BRIDGE.cv2_to_imgmsg(np.zeros((2, 2), np.int64)),
         "no encoding has values of bool": lambda: BRIDGE.dtype_with_channels_to_cvtype2(np.dtype(bool), 1),
-        "no JPEG, PNG or other picture": lambda: BRIDGE.compressed_imgmsg_to_cv2(compressed),
+        "not a JPEG, PNG or other picture": lambda: BRIDGE.compressed_imgmsg_to_cv2(compressed),
         "is not a type of images": lambda: BRIDGE.cvtype2_to_dtype_with_channels(cv2.CV_8UC2 - 1),
         "Unrecognized image encoding [bgr9]": lambda: BRIDGE.encoding_to_cvtype2("bgr9"),
     }

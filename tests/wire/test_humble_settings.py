@@ -10,7 +10,7 @@ import pytest
 from robolink import Context, Node
 from robolink.executors import SingleThreadedExecutor
 from robolink.graph.graph import Graph
-from robolink.graph.humble import MOST_REMEMBERED, Copies, CopyError, DistroError, is_asked_for
+from robolink.graph.humble import MOST_REMEMBERED, Copies, CopyError, DistroError, is_requested
 from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool
@@ -143,8 +143,8 @@ def test_one_that_speaks_humble_and_one_that_does_not_understand_each_other(
     ("value", "humble"), [("", False), ("humble", True), (" Humble ", True), ("jazzy", False), ("rolling", False)]
 )
 def test_the_variable(value: str, humble: bool) -> None:
-    assert is_asked_for({"ROBOLINK_ROS_DISTRO": value}) is humble
-    assert is_asked_for({}) is False
+    assert is_requested({"ROBOLINK_ROS_DISTRO": value}) is humble
+    assert is_requested({}) is False
 
 
 def test_an_unknown_distribution_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

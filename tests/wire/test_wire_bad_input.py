@@ -138,7 +138,8 @@ def test_a_reply_without_attachment_is_refused_and_a_good_one_taken(lab: Lab, lo
     assert lab.elsewhere.call(SetBool.Request(), timeout_sec=30.0).message == "fine"
     assert lab.elsewhere.malformed == 6
     (line,) = log_lines
-    assert "/elsewhere: refused an answer that is no std_srvs/srv/SetBool: an attachment has 33 bytes" in line.message
+    refused = "/elsewhere: refused an answer that is not a std_srvs/srv/SetBool: an attachment has 33 bytes"
+    assert refused in line.message
 
 
 def test_a_call_with_bad_answers_only_fails_and_says_why(lab: Lab, log_lines: list[Record]) -> None:
