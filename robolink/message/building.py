@@ -76,6 +76,7 @@ def _resolved(definition: Definition, field: Field, resolve: Resolve) -> FieldTy
 
 def _look_up(name: str, resolve: Resolve) -> type[Message]:
     """Return a nested message's class: a bare ``Header`` is the package's own, as for rosidl, else std_msgs'."""
+    # Files from ROS 1 mean std_msgs' by it.
     try:
         return resolve(name)
     except NotFoundError:

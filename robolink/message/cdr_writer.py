@@ -57,6 +57,7 @@ class WriterSource:
             if kind.code and kind.shape != "one":
                 self._numbers(kind, cls.__dict__[name], path)
             else:
+                # rosidl allows a field `from` or `class`; rclpy cannot read such messages.
                 self._field(kind, f"getattr({path}, {name!r})" if keyword.iskeyword(name) else f"{path}.{name}")
 
     def _field(self, kind: FieldType, value: str) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
 A_WHILE = 0.25
-"""Longest single wait, in seconds."""
+"""Longest single wait, in seconds: a signal just before a wait begins would be noticed only at its end."""
 
 T = TypeVar("T")
 

@@ -102,6 +102,7 @@ class Plan(NamedTuple):
 
     def _without_overrides(self, given: list[tuple[str, str]], holds_port: bool) -> zenoh.Config:
         asked_by, value = self.asked
+        # With the loopback's access control a session whose override names a network joins nothing, in silence.
         if asked_by == OVERRIDE:
             return _config(as_ros(dict(given).get("mode", "")))
         if self.place is not None:

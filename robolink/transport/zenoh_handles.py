@@ -243,7 +243,7 @@ class ZenohSubscription(Declared):
 
 
 QUIET = 0.03
-"""Quiet time after which no more peers are expected, in seconds."""
+"""Quiet time after which no more peers are expected, in seconds: a young session does not know how many there are."""
 
 PATIENCE = 0.5
 """Quiet time after which peers that have not answered count as frozen, in seconds."""

@@ -356,6 +356,7 @@ def _unhidden(beams: Beams, eyes: _Eyes, sensors: Indices, circles: Circles, inv
 
 def _in_turns(eyes: _Eyes, x: Array, y: Array) -> Array:
     """Return the directions of points as seen by the sensors, in turns from their first beam."""
+    # Its bits differ between machines: it only decides which beams look at a shape, never what they read.
     turns: Array = np.arctan2(y, x)
     turns /= math.tau
     turns -= eyes.turn
