@@ -95,7 +95,7 @@ class Registry(Generic[T]):
         """
         try:
             return self._read(entry)
-        except Exception as error:  # another package's code may raise anything
+        except (Exception, SystemExit) as error:  # another package's code may raise anything, and even leave
             reason = str(error) if isinstance(error, RobolinkError) else f"{type(error).__name__}: {error}"
             place = f"{_package(entry)} adds '{entry.name}' ({self.group}), which cannot be loaded from {entry.value}"
             raise ExtensionError(f"{place}: {' '.join(reason.split())}") from error

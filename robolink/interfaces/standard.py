@@ -56,6 +56,8 @@ def _own() -> dict[str, Path]:
 
 def _folder(entry: EntryPoint) -> Path:
     """Return the folder of a package of types that an entry point leads to."""
+    if not entry.name.isidentifier():
+        raise RobolinkError("a package of types has a name that programs can import, such as compass_msgs")
     folder = module_path(entry.value)
     if not any(_types_in(folder, kind) for kind in KINDS):
         raise RobolinkError(f"{folder} has no types, such as msg/NAME.msg")

@@ -232,12 +232,19 @@ class SensorKind(NamedTuple):
 
         Args:
             name: device, message or convert.
+
+        Raises:
+            RobolinkError: If it cannot be imported.
         """
-        return _imported(getattr(self, name))
-
-
-def _imported(part: Any) -> Any:
-    return _attribute(part) if isinstance(part, str) else part
+        part = getattr(self, name)
+        if not isinstance(part, str):
+            return part
+        try:
+            return _attribute(part)
+        except (ImportError, AttributeError) as error:
+            kind = self.description.__struct_fields__[0]
+            reason = f"{type(error).__name__}: {error}"
+            raise RobolinkError(f"the sensor '{kind}' cannot load its {name} from {part}: {reason}") from error
 
 
 @functools.cache
@@ -269,6 +276,8 @@ def _kind_at(entry: EntryPoint) -> SensorKind:
     found = entry.load()
     if not isinstance(found, SensorKind):
         raise RobolinkError(f"a sensor is a robolink.sim.sensors.SensorKind, not a {type(found).__name__}")
+    if found.description.__struct_fields__[0] != entry.name:  # the first key names the kind: no other finds it
+        raise RobolinkError(f"the first field of {found.description.__name__} must be '{entry.name}'")
     return found
 
 

@@ -84,9 +84,12 @@ topic.list = demo_extension:nodes
 topic.odd = demo_extension:odd
 broken = demo_extension:lacking
 number = demo_extension:number
+leaving = demo_leaving:app
 
 [robolink.sensors]
 compass = demo_compass:COMPASS
+lost = demo_compass:LOST
+other = demo_compass:COMPASS
 
 [robolink.nodes]
 shop-node = demo_extension:Shop
@@ -96,6 +99,7 @@ gone = demo_gone
 [robolink.interfaces]
 demo_msgs = demo_types.demo_msgs
 empty_msgs = demo_types
+odd-msgs = demo_types.demo_msgs
 
 [robolink.programs]
 demo_robot.drive = demo_extension:drive
@@ -139,7 +143,13 @@ def message(value, header, description):
     return Float64(data=math.degrees(value))
 
 
+class Lost(Sensor, Struct, frozen=True, forbid_unknown_fields=True):
+    lost: str
+    rate: Rate = 10.0
+
+
 COMPASS = SensorKind(Compass, CompassDevice, Float64, message)
+LOST = SensorKind(Lost, "demo_lost:Device", Float64, message)
 """
 
 
@@ -151,6 +161,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: demo-extension\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(ENTRY_POINTS)
     (tmp_path / "demo_extension.py").write_text(CODE)
+    (tmp_path / "demo_leaving.py").write_text("raise SystemExit('I \\x1b[2J leave')\n")
     (tmp_path / "demo_compass.py").write_text(COMPASS)
     types = tmp_path / "demo_types/demo_msgs"
     for kind, files in TYPES.items():
@@ -188,9 +199,10 @@ def test_help_lists_them_with_those_that_cannot_be_loaded(capsys: pytest.Capture
     assert main(["--help"]) == 0
     _, _, listed = capsys.readouterr().out.partition("Commands of other packages:\n")
     assert [line.split()[0] for line in listed.splitlines() if line[2:3].strip()] == [
-        "broken", "hello", "number", "weather"
+        "broken", "hello", "leaving", "number", "weather"
     ]  # fmt: skip
     assert "Greet somebody." in listed
+    assert r"SystemExit: I \x1b[2J leave" in " ".join(listed.split())
     assert main(["topic", "--help"]) == 0
     listed = capsys.readouterr().out
     assert re.search(r"nodes +List who uses a topic\.", listed)
@@ -212,6 +224,10 @@ def test_help_lists_them_with_those_that_cannot_be_loaded(capsys: pytest.Capture
         (
             ["topic", "odd", "--word", "x"],
             "demo-extension adds 'topic.odd' (robolink.commands), which cannot be loaded from demo_extension:odd: Run",
+        ),
+        (
+            ["leaving"],
+            "demo-extension adds 'leaving' (robolink.commands), which cannot be loaded from demo_leaving:app: System",
         ),
         (["helo"], "no command named 'helo' (did you mean 'hello'?)"),
         (["topic", "nodez"], "no command named 'topic nodez' (did you mean 'nodes'?)"),
@@ -248,6 +264,25 @@ def test_a_misspelt_sensor_is_answered_with_those_of_other_packages(tmp_path: Pa
     world.write_text("robots: [{name: ada, sensors: [{compas: heading}]}]\n")
     with pytest.raises(DocumentError, match=r"did you mean 'compass'\?.*one of its keys must be lidar.*, compass"):
         load_world(str(world))
+
+
+@pytest.mark.usefixtures("package")
+@pytest.mark.parametrize(
+    ("sensor", "reason"),
+    [
+        ("lost", "the sensor 'lost' cannot load its device from demo_lost:Device: ModuleNotFoundError: No module"),
+        ("other", "cannot be loaded from demo_compass:COMPASS: the first field of Compass must be 'other'"),
+    ],
+)
+def test_a_broken_sensor_is_one_line(
+    sensor: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    world = tmp_path / "world.yaml"
+    world.write_text(f"robots: [{{name: ada, pose: [1, 1, 0], sensors: [{{{sensor}: heading}}]}}]\n")
+    assert main(["run", "world", "-p", f"world:={world}"]) != 0
+    told = capsys.readouterr().err
+    assert reason in told
+    assert told.count("\n") == 1
 
 
 @pytest.mark.usefixtures("package")
@@ -310,6 +345,10 @@ def test_types_that_are_wrong_are_one_line(capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr().err.startswith(f"robolink: {place}")
     assert main(["interface", "packages"]) == 0
     assert "demo_msgs\n" in capsys.readouterr().out
+    assert main(["interface", "list"]) == 0  # no type of a package whose name no program could import
+    listed = capsys.readouterr().out
+    assert "demo_msgs/msg/Heading\n" in listed
+    assert "odd-msgs" not in listed
 
 
 @pytest.mark.usefixtures("package")

@@ -10,6 +10,7 @@ import typer.main
 from robolink.exceptions import RobolinkError
 from robolink.extensions import ExtensionError, Registry
 from robolink.extensions.optional import is_here
+from robolink.system.terminal import fit
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -123,7 +124,7 @@ def _broken(name: str, error: ExtensionError) -> Any:
     """Return a command that raises an error: help lists it with the reason, beside the commands that work."""
     app = typer.Typer(add_completion=False)
 
-    @app.command(name, short_help=str(error), context_settings={"ignore_unknown_options": True})
+    @app.command(name, short_help=fit(str(error)), context_settings={"ignore_unknown_options": True})
     def fail(words: Annotated[list[str] | None, typer.Argument()] = None) -> None:
         raise error
 
