@@ -1,4 +1,4 @@
-"""robolink plot: draw where robots go, and values over time. Here are the arguments; each verb's file does the work."""
+"""robolink plot: draw where robots go, and values over time. Here are the arguments; the other files do the work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""robolink tf: see where frames are in each other. Here are the arguments; each verb's file does the work."""
+"""robolink tf: see where frames are in each other. Here are the arguments; the other files do the work."""
 
 from __future__ import annotations
 

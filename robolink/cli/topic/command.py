@@ -1,4 +1,4 @@
-"""robolink topic: see and send what nodes publish. Here are the arguments; each verb's file does the work."""
+"""robolink topic: see and send what nodes publish. Here are the arguments; the other files do the work."""
 
 from __future__ import annotations
 
