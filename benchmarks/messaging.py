@@ -181,7 +181,7 @@ def conditions() -> str:
     with contextlib.suppress(ImportError):  # a robolink that leaves it to Zenoh
         from robolink.transport import shared_memory
 
-        return f"shared memory {'on' if enabled else 'off'}: {shared_memory.wanted(os.environ).reason}"
+        return f"shared memory {'on' if enabled else 'off'}: {shared_memory.decision(os.environ).reason}"
     return f"shared memory {'asked for' if enabled else 'off'}"
 
 

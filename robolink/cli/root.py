@@ -171,7 +171,7 @@ def root(
 ) -> None:
     """ROS 2 from pip install: run, launch, inspect and record nodes."""
     if network:
-        from robolink.networks.asked import ask
+        from robolink.networks.request import ask
 
         ask(os.environ, network, "--network")
 

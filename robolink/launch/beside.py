@@ -80,13 +80,13 @@ def check_keys(enclave: str, started: Mapping[str, bool]) -> None:
         enclave: Its enclave; '' is `/`.
         started: Whether each part of the system is started: by its name for people, such as `recorder`.
     """
-    from robolink.networks.asked import domain_id
+    from robolink.networks.request import domain_id
     from robolink.security import session  # few systems have keys
 
     names = [name for name, is_started in started.items() if is_started]
     try:
         if names:
-            session.wanted(os.environ, domain_id(os.environ), enclave or None)
+            session.requested(os.environ, domain_id(os.environ), enclave or None)
     except SecurityError as error:
         raise SecurityError(f"--enclave NAME gives the {' and the '.join(names)} keys: {error}") from None
 

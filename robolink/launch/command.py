@@ -15,7 +15,7 @@ from robolink.launch import beside
 from robolink.launch.entry import Entry
 from robolink.launch.planning import Launched, as_process, core_errors, processes
 from robolink.launch.readiness import waiting
-from robolink.networks.asked import domain_id
+from robolink.networks.request import domain_id
 from robolink.supervisor import Process, RunLogs, Supervisor
 from robolink.supervisor.processes.fork_server import ForkServer
 from robolink.supervisor.processes.lifeline import Lifeline

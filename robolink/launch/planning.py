@@ -15,7 +15,7 @@ from robolink.launch.entry import Entry, NodeToStart, Respawn
 from robolink.launch.readiness import Awaited, awaited
 from robolink.launch.reading.entries import read_launch_file
 from robolink.launch.shared_process import COMMAND, Member, written
-from robolink.networks.asked import NETWORK
+from robolink.networks.request import NETWORK
 from robolink.supervisor import Process
 from robolink.supervisor.policy import Restarts, Rules
 from robolink.system.processes import Variables, own_command

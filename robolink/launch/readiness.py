@@ -209,7 +209,7 @@ class _Watch:
 
     def run(self, say: Callable[[str], object], patience: float) -> None:
         """Watch until nothing is held, or until the watch is stopped."""
-        from robolink.networks.asked import domain_id
+        from robolink.networks.request import domain_id
         from robolink.transport import connect
         from robolink.wire import graph_pattern
 

@@ -11,8 +11,8 @@ import time
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from robolink.networks.asked import FIRST_PORT, ROUTER_PORT
 from robolink.networks.port_probe import SILENT, STRANGER, Port, listening
+from robolink.networks.request import FIRST_PORT, ROUTER_PORT
 from robolink.system import clocks
 from robolink.system.waits import get_within
 

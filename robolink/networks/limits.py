@@ -111,7 +111,7 @@ def _mistakes_of_links(limits: Limits) -> Iterator[tuple[tuple[Step, ...], str, 
         yield ("buffer",), reason, False
 
 
-def wanted(environ: Mapping[str, str]) -> Limits | None:
+def requested(environ: Mapping[str, str]) -> Limits | None:
     """Return the limits that ROBOLINK_LIMITS has; None if it is not set. Raises TransportError for a mistake in it."""
     text = environ.get(VARIABLE, "").strip()
     if not text:

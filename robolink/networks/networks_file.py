@@ -14,8 +14,8 @@ from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import DocumentError, TransportError
 from robolink.networks import hosts
-from robolink.networks.asked import ALIASES, ENDPOINT, NAMES, Wanted
 from robolink.networks.limits import Limits, mistakes
+from robolink.networks.request import ALIASES, ENDPOINT, NAMES, NetworkRequest
 from robolink.system.files import expanded, is_file
 
 FILE = "networks.yaml"
@@ -40,12 +40,12 @@ class Peers(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     limits: Limits | None = None
 
 
-def read_all(environ: Mapping[str, str], asked_by: str) -> dict[str, str | Peers]:
+def read_all(environ: Mapping[str, str], origin: str) -> dict[str, str | Peers]:
     """Return the networks of the user's file and the workspace's, by name; the workspace's counts more.
 
     Args:
         environ: Variables that say where the files are.
-        asked_by: Option or variable to name in an error.
+        origin: Option or variable to name in an error.
 
     Raises:
         TransportError: for a mistake in a file, with `file:line:column`.
@@ -61,13 +61,13 @@ def read_all(environ: Mapping[str, str], asked_by: str) -> dict[str, str | Peers
         try:
             found |= _read(path)
         except DocumentError as error:
-            raise TransportError(f"{asked_by}: {error}") from None
+            raise TransportError(f"{origin}: {error}") from None
     return found
 
 
-def limits_of(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
+def limits_of(request: NetworkRequest, environ: Mapping[str, str]) -> Limits | None:
     """Return the limits of a network of the files; None if it has none, or is not there. Raises as `read_all` does."""
-    found = read_all(environ, asked.asked_by).get(asked.value)
+    found = read_all(environ, request.origin).get(request.value)
     return found.limits if isinstance(found, Peers) else None
 
 

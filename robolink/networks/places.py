@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 from robolink.exceptions import TransportError, nearest
 from robolink.networks import hosts, networks_file
-from robolink.networks.asked import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, Wanted
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.networks.refusals import WANTS_KEYS, wants_keys
+from robolink.networks.request import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, NetworkRequest
 from robolink.networks.settings import client, settings
 
 KNOWN = (
@@ -49,29 +49,29 @@ class Place(NamedTuple):
         return settings(name, domain, holds_port=holds_port, peers=self.endpoints)
 
 
-def find(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: bool = False) -> Place | str:
+def find(request: NetworkRequest, domain: int, environ: Mapping[str, str], *, secured: bool = False) -> Place | str:
     """Return the place that is asked for; a text where the file of networks says another network instead.
 
     Raises TransportError if there is no such place, or if nobody answers there. With `secured` a host is `tls/HOST`:
     nothing is sent there in the clear.
     """
-    known = networks_file.read_all(environ, asked.asked_by)
-    meant = known.get(asked.value)
+    known = networks_file.read_all(environ, request.origin)
+    meant = known.get(request.value)
     if isinstance(meant, networks_file.Peers) and meant.network:
         meant = meant.network
     if isinstance(meant, networks_file.Peers):
         return Place(tuple(_peer(each, domain) for each in meant.peers), lan=meant.lan)
     if meant is not None and not isinstance(found := _of_word(meant), hosts.Host):
         return found
-    host = hosts.parse(meant or asked.value)
-    if host is None or (meant is None and asked.value.endswith(networks_file.FILES)):
-        raise _unknown(asked, known, environ)
+    host = hosts.parse(meant or request.value)
+    if host is None or (meant is None and request.value.endswith(networks_file.FILES)):
+        raise _unknown(request, known, environ)
     try:
-        return _asked_there(host._replace(tls=host.tls or secured), asked, domain)
+        return _answering(host._replace(tls=host.tls or secured), request, domain)
     except hosts.UnknownHostError:
         if meant is not None:
-            raise TransportError(f"{asked.asked_by}: '{asked.value}' is {meant}, a host that is not known") from None
-        raise _unknown(asked, known, environ) from None
+            raise TransportError(f"{request.origin}: '{request.value}' is {meant}, a host that is not known") from None
+        raise _unknown(request, known, environ) from None
 
 
 def _of_word(meant: str) -> str | hosts.Host:
@@ -91,7 +91,7 @@ def _peer(text: str, domain: int) -> str:
     return host.endpoint(host.port or FIRST_PORT + domain)
 
 
-def _asked_there(host: hosts.Host, asked: Wanted, domain: int) -> Place:
+def _answering(host: hosts.Host, request: NetworkRequest, domain: int) -> Place:
     """Ask a host what listens there: it is joined as a peer if it is one, else as a client.
 
     A router forwards between a client and a peer, not between two peers. With TLS the answer cannot be read without a
@@ -100,10 +100,10 @@ def _asked_there(host: hosts.Host, asked: Wanted, domain: int) -> Place:
     port = hosts.seek(host, domain)
     if port is None or not (port.speaks_zenoh or host.tls):
         if not host.tls and (keyed := next((each for each in host.ports(domain) if wants_keys(host.name, each)), 0)):
-            raise TransportError(f"{asked.asked_by}: at {host.name}, port {keyed}, is a process {WANTS_KEYS}")
+            raise TransportError(f"{request.origin}: at {host.name}, port {keyed}, is a process {WANTS_KEYS}")
         if port is not None:
-            raise TransportError(f"{asked.asked_by}: at {host.name}, port {port.number}, {_other(port)}")
-        raise TransportError(f"{asked.asked_by}: nobody answers at {host.name}{_what_to_do(host, domain)}")
+            raise TransportError(f"{request.origin}: at {host.name}, port {port.number}, {_other(port)}")
+        raise TransportError(f"{request.origin}: nobody answers at {host.name}{_what_to_do(host, domain)}")
     endpoint = host.endpoint(port.number)
     return Place((endpoint,), host.tls or port.role == ROUTER, session=port.session)
 
@@ -121,8 +121,8 @@ def _what_to_do(host: hosts.Host, domain: int) -> str:
     )
 
 
-def _unknown(asked: Wanted, known: Mapping[str, object], environ: Mapping[str, str]) -> TransportError:
-    value = asked.value[:200]
+def _unknown(request: NetworkRequest, known: Mapping[str, object], environ: Mapping[str, str]) -> TransportError:
+    value = request.value[:200]
     names = [*NAMES, *ALIASES, *known]
     wrong = hosts.mistake(value)
     if not wrong:
@@ -130,4 +130,4 @@ def _unknown(asked: Wanted, known: Mapping[str, object], environ: Mapping[str, s
         wrong = f"{KNOWN}{more}"
         if path := networks_file.passed_over(environ):
             wrong += f"; {path} is not read, since others may write it or its folder"
-    return TransportError(f"{asked.asked_by}: no network, host or file '{value}'{nearest(value, names)}; {wrong}")
+    return TransportError(f"{request.origin}: no network, host or file '{value}'{nearest(value, names)}; {wrong}")

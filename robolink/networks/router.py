@@ -8,7 +8,7 @@ from typing import Any
 from robolink.constants import LARGEST_MESSAGE
 from robolink.exceptions import TransportError
 from robolink.networks import hosts
-from robolink.networks.asked import ROUTER_PORT
+from robolink.networks.request import ROUTER_PORT
 from robolink.networks.settings import LEASE_MS, MOST_PENDING, RETRY, most_pending
 
 EVERYWHERE = ("0.0.0.0", "::")

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from robolink.constants import LARGEST_MESSAGE
-from robolink.networks.asked import FIRST_PORT, ROS_ROUTER, checked_domain
+from robolink.networks.request import FIRST_PORT, ROS_ROUTER, checked_domain
 
 LEASE_MS = 60_000
 """Lease of a silent peer, in milliseconds, after which it counts as gone, as in rmw_zenoh.

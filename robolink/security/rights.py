@@ -206,16 +206,16 @@ def _table(
     def beside(kind: str, end: str) -> list[str]:
         return [key for name in names[kind] for key in patterns.beside(name, domain, end)]
 
-    kept, heard = beside("publish", "pub"), beside("subscribe", "pub")
-    yield _PUT, keys("publish") + kept
+    published, heard = beside("publish", "pub"), beside("subscribe", "pub")
+    yield _PUT, keys("publish") + published
     yield ("declare_subscriber",), keys("subscribe") + heard
     yield (_ASK,), keys("request") + heard
-    yield ("declare_queryable",), keys("reply") + kept
+    yield ("declare_queryable",), keys("reply") + published
     graph = [graph_pattern(domain)]
     if flow == "ingress":
-        yield ("liveliness_token",), _tokens(rights, held, allow=allow) + kept + beside("subscribe", "sub")
+        yield ("liveliness_token",), _tokens(rights, held, allow=allow) + published + beside("subscribe", "sub")
     elif allow:
-        yield ("liveliness_token",), graph + kept + beside("subscribe", "sub")
+        yield ("liveliness_token",), graph + published + beside("subscribe", "sub")
     if allow:
         yield ("reply",), keys("publish", "reply")
         yield _LOOK, graph + heard + beside("publish", "sub")

@@ -60,7 +60,7 @@ class Security(NamedTuple):
     """Mistakes and open files of the keystore that do not keep this enclave out, one line each."""
 
 
-def wanted(environ: Mapping[str, str], domain: int, enclave: str | None = None) -> Security | None:
+def requested(environ: Mapping[str, str], domain: int, enclave: str | None = None) -> Security | None:
     """Return the security that the environment asks for; None where it asks for none.
 
     Args:
@@ -152,8 +152,8 @@ def fingerprint(security: Security) -> frozenset[tuple[str, int, int]]:
 
 
 def settings_for(environ: Mapping[str, str], domain: int, enclave: str | None = None) -> dict[str, Any] | None:
-    """Return the settings of Zenoh, by path, that security asks for; None where it is off. As for `wanted`."""
-    security = wanted(environ, domain, enclave)
+    """Return the settings of Zenoh, by path, that security asks for; None where it is off. As for `requested`."""
+    security = requested(environ, domain, enclave)
     return None if security is None else settings(security)
 
 

@@ -143,7 +143,7 @@ LONGEST_ANSWER = 4096
 _SOCK_DIAG, _BY_FAMILY, _IS_REQUEST = 4, 20, 1  # netlink's protocol, type of message and flag
 _ANY_STATE, _ANY_COOKIE = 0xFFFFFFFF, 0xFFFFFFFF
 _HEADER = struct.Struct("=IHHII")  # nlmsghdr: length, type, flags, number, port
-_WANTED = struct.Struct("=BBxxI")  # inet_diag_req_v2: family, protocol, states
+_DIAGNOSIS = struct.Struct("=BBxxI")  # inet_diag_req_v2: family, protocol, states
 _FOUND = struct.Struct("=BBBB48xI")  # inet_diag_msg: family, state, timer, retransmissions; milliseconds left
 _ESTABLISHED, _RETRANSMITS, _PROBES = 1, 1, 4
 _UNDER_WAY = 0, errno.EINPROGRESS, errno.ECONNREFUSED
@@ -197,7 +197,7 @@ def question(here: Place, there: Place) -> bytes:
     family = socket.AF_INET6 if ":" in here[0] else socket.AF_INET
     ends = b"".join(socket.inet_pton(family, each[0]).ljust(16, b"\0") for each in (here, there))
     ports, rest = struct.pack("!HH", here[1], there[1]), struct.pack("=III", 0, _ANY_COOKIE, _ANY_COOKIE)
-    content = _WANTED.pack(family, socket.IPPROTO_TCP, _ANY_STATE) + ports + ends + rest
+    content = _DIAGNOSIS.pack(family, socket.IPPROTO_TCP, _ANY_STATE) + ports + ends + rest
     return _HEADER.pack(_HEADER.size + len(content), _BY_FAMILY, _IS_REQUEST, 0, 0) + content
 
 
@@ -220,11 +220,11 @@ class Probes:
 
     def passes(self, stuck: Iterable[Waiting]) -> bool:
         """True if another machine answers while its connection waits for longer than PAUSE; never waits itself."""
-        wanted = {each.there: each.pause for each in stuck}
-        for place in [each for each in self._begun if each not in wanted]:
+        pauses = {each.there: each.pause for each in stuck}
+        for place in [each for each in self._begun if each not in pauses]:
             self._end(place)
-        for place in [*wanted][:MOST_PROBES]:
-            if self._answers(place) and wanted[place] > PAUSE:
+        for place in [*pauses][:MOST_PROBES]:
+            if self._answers(place) and pauses[place] > PAUSE:
                 self.close()
                 return True
         return False

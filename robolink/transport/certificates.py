@@ -27,7 +27,7 @@ ANSWER_WITHIN = 1.0
 SILENT_FOR = 0.3
 """Silence after which a certificate counts as accepted, in s: with TLS 1.3 a refusal comes after the handshake."""
 
-MOST_ASKED = 4
+MOST_CHECKED = 4
 """Most endpoints that are checked for their reason to refuse."""
 
 _NOT_YET, _EXPIRED = 9, 10
@@ -111,8 +111,8 @@ def refusals(config: zenoh.Config, endpoints: list[str] | None = None) -> list[s
 
     `endpoints` are tried in their place if given. Endpoints where nobody listens are left out.
     """
-    asked = endpoints if endpoints is not None else read(config, "connect/endpoints") or ()
-    secured = [address_of(each) for each in asked if each.startswith("tls/")][:MOST_ASKED]
+    given = endpoints if endpoints is not None else read(config, "connect/endpoints") or ()
+    secured = [address_of(each) for each in given if each.startswith("tls/")][:MOST_CHECKED]
     answers = ((each, _refusal(config, each)) for each in secured)
     return [f"{endpoint}: {answer}" for endpoint, answer in answers if answer]
 

@@ -14,7 +14,7 @@ import zenoh
 
 from robolink.exceptions import TransportError
 from robolink.networks import refusals
-from robolink.networks.asked import FIRST_PORT, ROS_ROUTER, checked_domain
+from robolink.networks.request import FIRST_PORT, ROS_ROUTER, checked_domain
 from robolink.networks.settings import OFTEN
 from robolink.system import clocks
 from robolink.transport import addresses, certificates, lifetime, network, port_sharing
@@ -44,7 +44,7 @@ class Joined(NamedTuple):
 
 def join(
     domain: int,
-    asked: str | None,
+    requested: str | None,
     environ: Mapping[str, str],
     secure: Callable[[zenoh.Config], object] | None,
     named: frozenset[str] = frozenset(),
@@ -53,7 +53,7 @@ def join(
 
     Args:
         domain: ROS domain id.
-        asked: Network, as in `robolink.networks.asked.wanted`; None is the one that the environment requests.
+        requested: Network, as in `robolink.networks.request.requested`; None is the one that the environment requests.
         environ: Environment.
         secure: Function that closes a configuration to whoever has no keys; None does as the environment says.
         named: Addresses at which the session is to be found; none for those that Zenoh knows.
@@ -62,7 +62,7 @@ def join(
         show_log: Callable[[], object] = zenoh.try_init_log_from_env
         show_log()
     port = FIRST_PORT + checked_domain(domain)
-    found = network.plan(asked, domain, environ, secure)
+    found = network.plan(requested, domain, environ, secure)
 
     def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
         return addresses.named(found.config(holds_port=holds_port), named)
@@ -76,11 +76,11 @@ def join(
             network.await_host(joined.session, found)
             return joined._replace(leaves_machine=within.leaves_machine, thinned=thinned)
         if wrong := certificates.faults(config):
-            raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(wrong)}")
+            raise TransportError(f"cannot join the network '{found.request.value}': {'; '.join(wrong)}")
         return _listen_beside(load)._replace(leaves_machine=within.leaves_machine, thinned=thinned)
     except zenoh.ZError as error:
         reasons = [network.reason(error), *certificates.refusals(found.config(holds_port=False))]
-        raise TransportError(f"cannot join the network '{found.asked.value}': {'; '.join(reasons)}") from None
+        raise TransportError(f"cannot join the network '{found.request.value}': {'; '.join(reasons)}") from None
 
 
 def _listen_beside(load: Callable[[], zenoh.Config]) -> Joined:

@@ -15,7 +15,7 @@ from typing import Protocol, TypeVar
 from robolink.exceptions import TransportError
 from robolink.system import clocks, exit_code, waits
 
-_Kept = TypeVar("_Kept")
+_Item = TypeVar("_Item")
 
 
 class Mortal(Protocol):
@@ -86,8 +86,8 @@ def finish(work: Callable[[], object], within: float) -> None:
     waits.wait(done, within)  # no join: before 3.13 Python takes a thread for ended when a Ctrl-C breaks into that
 
 
-def interruptible(make: Callable[[], _Kept], undo: Callable[[_Kept], object]) -> _Kept:
-    """Return what `make()` returns or raises; a Ctrl-C ends the wait for it at once, and not when Zenoh comes back.
+def interruptible(make: Callable[[], _Item], undo: Callable[[_Item], object]) -> _Item:
+    """Return the result of `make()`, or raise its error; a Ctrl-C ends the wait at once, not when Zenoh comes back.
 
     Args:
         make: Function that may be inside Zenoh for seconds; in the main thread it is run on a thread beside.
@@ -95,7 +95,7 @@ def interruptible(make: Callable[[], _Kept], undo: Callable[[_Kept], object]) ->
     """
     if threading.current_thread() is not threading.main_thread() or _ending:
         return make()
-    made, errors, done, is_left = list[_Kept](), list[BaseException](), threading.Event(), threading.Event()
+    made, errors, done, is_left = list[_Item](), list[BaseException](), threading.Event(), threading.Event()
 
     def drop() -> None:
         with contextlib.suppress(IndexError):  # the other thread has done it
@@ -232,7 +232,7 @@ def _end_if_stuck() -> None:
         exit_code.end_early()
 
 
-def all_of(them: weakref.WeakSet[_Kept]) -> list[_Kept]:
+def all_of(them: weakref.WeakSet[_Item]) -> list[_Item]:
     """Return a copy of a set to which other threads may be adding."""
     while True:
         with contextlib.suppress(RuntimeError):  # another thread has just added one

@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import TransportError
-from robolink.networks.asked import (
+from robolink.networks.request import (
     ENDPOINT,
     NAMES,
     OVERRIDE,
-    Wanted,
+    NetworkRequest,
     network_of_overrides,
     overrides,
-    wanted,
+    requested,
 )
 from robolink.networks.settings import as_ros, client, settings
 from robolink.system import clocks
@@ -53,7 +53,7 @@ class Plan(NamedTuple):
     Made by `plan`. `config` returns the configuration of a session, which may be asked for again and again.
     """
 
-    asked: Wanted
+    request: NetworkRequest
     domain: int
     environ: Mapping[str, str]
     place: Place | None = None
@@ -68,13 +68,13 @@ class Plan(NamedTuple):
         """True if the processes of this machine find each other at the rendezvous port of their domain."""
         if self.place is not None:
             return self.place.meets
-        return meets_at_port(self.asked.value, self.environ)
+        return meets_at_port(self.request.value, self.environ)
 
     def config(self, *, holds_port: bool = True) -> zenoh.Config:
         """Return Zenoh's configuration; without `holds_port` the session leaves the rendezvous port to another."""
         given = overrides(self.environ)
         config = _overridden(self._limited(self._without_overrides(given, holds_port)), given)
-        shares = shared_memory.wanted(self.environ, mode=mode_of(config))
+        shares = shared_memory.decision(self.environ, mode=mode_of(config))
         named = any(SHARES_MEMORY.startswith(path) for path, _ in given)
         if not named and (shares.forced or not shares.on):  # else as it is: a file may have it off
             config.insert_json5(SHARES_MEMORY, json.dumps(shares.on))
@@ -101,20 +101,20 @@ class Plan(NamedTuple):
         return config
 
     def _without_overrides(self, given: list[tuple[str, str]], holds_port: bool) -> zenoh.Config:
-        asked_by, value = self.asked
+        origin, value = self.request
         # With the loopback's access control a session whose override names a network joins nothing, in silence.
-        if asked_by == OVERRIDE:
+        if origin == OVERRIDE:
             return _config(as_ros(dict(given).get("mode", "")))
         if self.place is not None:
             return _config(self.place.settings(self.domain, holds_port=holds_port))
         if ENDPOINT.fullmatch(value):
             return _config(client(value))
         if value not in NAMES:
-            return _from_file(asked_by, file_of(value))
-        wished = settings(value, self.domain, holds_port=holds_port)
+            return _from_file(origin, file_of(value))
+        found_settings = settings(value, self.domain, holds_port=holds_port)
         if any(path.startswith("access_control") for path, _ in given):  # theirs, and not a mixture with ours
-            wished.pop("access_control", None)
-        return _config(wished)
+            found_settings.pop("access_control", None)
+        return _config(found_settings)
 
 
 def plan(
@@ -123,7 +123,7 @@ def plan(
     """Return the requested network, ready to be joined. A host is asked what it is, which takes it some milliseconds.
 
     Args:
-        network: As in `robolink.networks.asked.wanted`; None asks the environment.
+        network: As in `robolink.networks.request.requested`; None asks the environment.
         domain: ROS domain id.
         environ: Variables that may ask for a network, and override settings.
         secure: Function that closes a configuration to whoever has no keys; None does as the environment asks.
@@ -131,34 +131,34 @@ def plan(
     Raises:
         TransportError: if there is no such network, file or host, or if nobody answers there.
     """
-    asked, secure = wanted(network, environ), secure or _secure(domain, environ)
-    found = _planned(asked, domain, environ, secured=secure is not None)
-    return found._replace(limits=limits_wanted(asked, environ), secure=secure)
+    request, secure = requested(network, environ), secure or _secure(domain, environ)
+    found = _planned(request, domain, environ, secured=secure is not None)
+    return found._replace(limits=limits_for(request, environ), secure=secure)
 
 
-def _planned(asked: Wanted, domain: int, environ: Mapping[str, str], *, secured: bool) -> Plan:
-    if _needs_no_name(asked):
-        return Plan(asked, domain, environ)
+def _planned(request: NetworkRequest, domain: int, environ: Mapping[str, str], *, secured: bool) -> Plan:
+    if _needs_no_name(request):
+        return Plan(request, domain, environ)
     from robolink.networks import places  # late: this machine's own network does without
 
-    found = places.find(asked, domain, environ, secured=secured)
+    found = places.find(request, domain, environ, secured=secured)
     if isinstance(found, str):  # what a file of networks says in the place of this name
-        return Plan(Wanted(asked.asked_by, found), domain, environ)
-    return Plan(asked, domain, environ, found)
+        return Plan(NetworkRequest(request.origin, found), domain, environ)
+    return Plan(request, domain, environ, found)
 
 
-def _needs_no_name(asked: Wanted) -> bool:
+def _needs_no_name(request: NetworkRequest) -> bool:
     """True for networks that are neither a host nor a name of the file of networks."""
-    if asked.asked_by == OVERRIDE or asked.value in NAMES or ENDPOINT.fullmatch(asked.value):
+    if request.origin == OVERRIDE or request.value in NAMES or ENDPOINT.fullmatch(request.value):
         return True
-    return is_file(file_of(asked.value))
+    return is_file(file_of(request.value))
 
 
-def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
+def limits_for(request: NetworkRequest, environ: Mapping[str, str]) -> Limits | None:
     """Return the limits of ROBOLINK_LIMITS, else those that the file of networks has for a network; None for none.
 
     Args:
-        asked: The network.
+        request: The network.
         environ: Variables that may have limits, and say where the file of networks is.
 
     Raises:
@@ -167,12 +167,12 @@ def limits_wanted(asked: Wanted, environ: Mapping[str, str]) -> Limits | None:
     if environ.get("ROBOLINK_LIMITS"):
         from robolink.networks import limits  # late: few sessions need it
 
-        return limits.wanted(environ)
-    if _needs_no_name(asked):
+        return limits.requested(environ)
+    if _needs_no_name(request):
         return None
     from robolink.networks import networks_file  # late, too
 
-    return networks_file.limits_of(asked, environ)
+    return networks_file.limits_of(request, environ)
 
 
 def await_host(session: zenoh.Session, found: Plan) -> None:
@@ -202,11 +202,11 @@ def load(network: str | None, domain: int, environ: Mapping[str, str], *, holds_
     return plan(network, domain, environ).config(holds_port=holds_port)
 
 
-def _config(wished: dict[str, Any]) -> zenoh.Config:
+def _config(found_settings: dict[str, Any]) -> zenoh.Config:
     import zenoh
 
-    transport = wished["transport"] | {"shared_memory": _SHARED_MEMORY}
-    config: zenoh.Config = zenoh.Config.from_json5(json.dumps(wished | {"transport": transport}))
+    transport = found_settings["transport"] | {"shared_memory": _SHARED_MEMORY}
+    config: zenoh.Config = zenoh.Config.from_json5(json.dumps(found_settings | {"transport": transport}))
     return config
 
 
@@ -215,13 +215,13 @@ def meets_at_port(value: str, environ: Mapping[str, str]) -> bool:
     return value in ("localhost", "lan", "subnet") and not network_of_overrides(environ)
 
 
-def _from_file(asked_by: str, path: Path) -> zenoh.Config:
+def _from_file(origin: str, path: Path) -> zenoh.Config:
     import zenoh
 
     try:
         config: zenoh.Config = zenoh.Config.from_file(path)
     except zenoh.ZError as error:
-        raise TransportError(f"{asked_by}: {path}: {reason(error)}") from None
+        raise TransportError(f"{origin}: {path}: {reason(error)}") from None
     config.insert_json5("timestamping/enabled", "true")  # latched topics cannot do without
     return config
 
@@ -241,7 +241,7 @@ def _overridden(config: zenoh.Config, given: list[tuple[str, str]]) -> zenoh.Con
     for path, value in given:
         try:
             config.insert_json5(path, value)
-        except (zenoh.ZError, UnicodeEncodeError) as error:  # the latter: bytes that are no UTF-8
+        except (zenoh.ZError, UnicodeEncodeError) as error:  # the latter: bytes that are not UTF-8
             override = shown(f"{path}={value}")
             raise TransportError(f"{OVERRIDE}: '{override}': {reason(error)}") from None
     return config

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.system import clocks
 from robolink.transport.reach import address_of, host_of, mode_of, port_of, read
 

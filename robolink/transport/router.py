@@ -13,7 +13,7 @@ import zenoh
 
 from robolink.exceptions import TransportError
 from robolink.networks import hosts, limits
-from robolink.networks.asked import domain_id
+from robolink.networks.request import domain_id
 from robolink.networks.router import router_settings
 from robolink.security import session
 from robolink.security.session import Security
@@ -46,7 +46,7 @@ class Router:
     """
 
     def __init__(self, listen: Sequence[str], connect: Sequence[str], security: Security | None) -> None:
-        self._asked = listen, connect
+        self._endpoints = listen, connect
         self._keys = Keys(security) if security else None
         self.enclave = security.enclave if security else ""
         """Its enclave; '' without security."""
@@ -134,8 +134,8 @@ class Router:
         return faults(self.connects, str(self._sessions[-1].info.zid()), self.links())
 
     def _config(self) -> zenoh.Config:
-        config: zenoh.Config = zenoh.Config.from_json5(json.dumps(router_settings(*self._asked)))
-        if limited := limits.wanted(os.environ):
+        config: zenoh.Config = zenoh.Config.from_json5(json.dumps(router_settings(*self._endpoints)))
+        if limited := limits.requested(os.environ):
             limits.apply(config, limited, domain_id(os.environ))
         if self._keys:
             self._keys.secure(config)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from robolink.exceptions import SecurityError
 from robolink.logging import get_logger
-from robolink.networks.asked import domain_id
+from robolink.networks.request import domain_id
 from robolink.security import session
 from robolink.security.keystore import CERTIFICATE, KEY, ROUTER
 from robolink.security.session import Security
@@ -48,7 +48,7 @@ def secure_as(domain: int, environ: Mapping[str, str]) -> Callable[[zenoh.Config
     Raises:
         SecurityError: where the session must have keys and cannot.
     """
-    security = session.wanted(environ, domain)
+    security = session.requested(environ, domain)
     return None if security is None else functools.partial(secure, security)
 
 
@@ -58,7 +58,7 @@ def router_security(environ: Mapping[str, str]) -> Security | None:
     Its enclave is `/router` unless the environment names another. It passes on what each enclave may send, in the
     domain of ROS_DOMAIN_ID and in no other. Raises SecurityError where it must have keys and cannot.
     """
-    security = session.wanted(environ, domain_id(environ), ROUTER)
+    security = session.requested(environ, domain_id(environ), ROUTER)
     if security is None and session.is_on(environ):
         get_logger("security").warning(
             f"enclave '{environ.get(session.OVERRIDE) or ROUTER}' has no keys, and "

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 
 from robolink.exceptions import SecurityError, TransportError, WireError
 from robolink.logging import get_logger
-from robolink.networks.asked import FIRST_PORT, checked_domain
+from robolink.networks.request import FIRST_PORT, checked_domain
 from robolink.qos import QoSProfile
 from robolink.security import session
 from robolink.security.session import AUTHORITY, Security
@@ -31,18 +31,18 @@ from robolink.wire import parse_token
 
 
 def open_secured(
-    domain: int, asked: str | None, environ: Mapping[str, str], enclave: str | None
+    domain: int, requested: str | None, environ: Mapping[str, str], enclave: str | None
 ) -> SecuredTransport | None:
     """Open a session with the security that the environment requests; None if it is to be open to everybody.
 
     Args:
         domain: ROS domain id.
-        asked: Network; None asks the environment.
+        requested: Network; None asks the environment.
         environ: Environment.
         enclave: Enclave of `--enclave`; None is `/`.
     """
     checked_domain(domain)
-    security = session.wanted(environ, domain, enclave)
+    security = session.requested(environ, domain, enclave)
     if not session.is_on(environ):  # False, written otherwise
         return None
     if security is None:
@@ -53,7 +53,7 @@ def open_secured(
         return None
     for warning in security.warnings:
         get_logger("security").warning(warning)
-    return SecuredTransport(security, asked, {**environ, session.OVERRIDE: security.enclave})
+    return SecuredTransport(security, requested, {**environ, session.OVERRIDE: security.enclave})
 
 
 class SecuredTransport(RoamingTransport):
@@ -61,20 +61,22 @@ class SecuredTransport(RoamingTransport):
 
     Args:
         security: Keys and rights.
-        asked: Network; None asks the environment.
+        requested: Network; None asks the environment.
         environ: Environment, which names the enclave.
     """
 
-    def __init__(self, security: Security, asked: str | None, environ: Mapping[str, str]) -> None:
+    def __init__(self, security: Security, requested: str | None, environ: Mapping[str, str]) -> None:
         self.enclave = security.enclave
         self._keys = Keys(security)
         domain = security.rights.domain
         try:
-            super().__init__(functools.partial(ZenohTransport, domain, asked, dict(environ), self._keys.secure), domain)
+            super().__init__(
+                functools.partial(ZenohTransport, domain, requested, dict(environ), self._keys.secure), domain
+            )
         except SecurityError:
             raise
         except TransportError as error:
-            raise SecurityError(f"{error}{_reasons(domain, asked, environ)}") from None
+            raise SecurityError(f"{error}{_reasons(domain, requested, environ)}") from None
         watch(self)
 
     def fingerprint(self) -> object:
@@ -150,10 +152,10 @@ def _named(sink: Sink) -> Sink:
     return pass_on
 
 
-def _reasons(domain: int, asked: str | None, environ: Mapping[str, str]) -> str:
+def _reasons(domain: int, requested: str | None, environ: Mapping[str, str]) -> str:
     """Return why who listens at the rendezvous port refuses this enclave, after a semicolon; '' if he does not."""
     place = f"tls/127.0.0.1:{FIRST_PORT + domain}"
-    found = certificates.refusals(network.load(asked, domain, environ, holds_port=False), [place])
+    found = certificates.refusals(network.load(requested, domain, environ, holds_port=False), [place])
     return f"; {found[0]}" if found else ""
 
 
@@ -213,7 +215,7 @@ class Watch:
     def __init__(self, session: Renewable) -> None:
         self._session = weakref.ref(session)
         self._seen = session.fingerprint()
-        self._told = ""
+        self._reported = ""
         self._warned_of: Validity | None = None
         self._has_ended = False
 
@@ -243,11 +245,11 @@ class Watch:
         try:
             session.renew()
         except TransportError as error:
-            if (why := str(error)) != self._told and not session.has_left:
+            if (why := str(error)) != self._reported and not session.has_left:
                 logger.error(f"permissions or keys have changed, and do not count yet: {why}")
-            self._told = why
+            self._reported = why
             return False
-        self._told, self._has_ended = "", clocks.time_of_day() >= session.validity.end
+        self._reported, self._has_ended = "", clocks.time_of_day() >= session.validity.end
         logger.info(f"enclave '{session.enclave}': permissions or keys have changed, and count from now on")
         return True
 

@@ -102,7 +102,7 @@ def decide(machine: Machine) -> Decision:
     return Decision(True, f"{_mb(machine.free)} of {FOLDER} are free, lockable: {lockable}")
 
 
-def wanted(environ: Mapping[str, str], machine: Machine | None = None, mode: str = "peer") -> Decision:
+def decision(environ: Mapping[str, str], machine: Machine | None = None, mode: str = "peer") -> Decision:
     """Return the decision of ROBOLINK_SHARED_MEMORY, or else that of the limits, those of this process by default.
 
     A session whose `mode` is `client` meets a router alone, and it is the router's limits that would count: one that

@@ -45,7 +45,7 @@ class ZenohTransport(Transport):
 
     Args:
         domain: ROS domain id.
-        network: Network, as in `robolink.networks.asked.wanted`; None is the one that the environment requests.
+        network: Network, as in `robolink.networks.request.requested`; None is the one that the environment requests.
         environ: Environment; None is the process's own.
         secure: Function that closes each configuration to whoever has no keys, in place of what the environment says.
         named: Addresses of this machine at which others find the session; none for those that Zenoh knows.

@@ -28,7 +28,7 @@ class Publishers(NamedTuple):
     """Zenoh's publisher, and the one that knows whether anybody listens: one object unless samples are kept."""
 
     used: Any
-    asked: Any
+    matcher: Any
     declare_remote: Callable[[], Any]
     """Declares one that knows whether any other session listens."""
 

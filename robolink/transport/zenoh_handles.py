@@ -133,14 +133,14 @@ class _Gone:
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = ("_asked", "_declare_remote", "_has_told", "_matched_until", "_remote", "_topic", "_used", "key")
+    __slots__ = ("_declare_remote", "_has_reported", "_matched_until", "_matcher", "_remote", "_topic", "_used", "key")
 
     def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
         # First, since it may be shut from the moment on that the session has it.
         self.key, self._topic = key, holdings.topic(key)
-        self._used, self._asked, self._declare_remote = publishers
+        self._used, self._matcher, self._declare_remote = publishers
         self._remote: Any = None
-        self._has_told, self._matched_until = False, 0.0
+        self._has_reported, self._matched_until = False, 0.0
         super().__init__(holdings, [])
 
     def put(self, payload: bytes, attachment: bytes) -> None:
@@ -181,22 +181,22 @@ class ZenohOutlet(Declared):
     @property
     def matched(self) -> bool:
         """True if a subscription is known, here or elsewhere."""
-        return bool(self._topic.sinks) or is_matching(self._asked)
+        return bool(self._topic.sinks) or is_matching(self._matcher)
 
     def _tell_of_no_room(self, size: int) -> None:
         """Warn once about a full buffer: Zenoh drops silently, and the receiver may never get anything."""
-        if not self._has_told:
-            self._has_told = True
+        if not self._has_reported:
+            self._has_reported = True
             get_logger("robolink.transport").warning(
                 f"{self.key[:200]}: a message of {size:,} bytes waited {LONGEST_WAIT:g} s for room and may not arrive:"
                 " a subscriber's link is too slow for messages of this size, or it stands still (said once)"
             )
 
     def _worth_a_copy(self, now: float) -> bool:
-        retains_for_late_joiners = self._used is not self._asked
+        retains_for_late_joiners = self._used is not self._matcher
         if retains_for_late_joiners or now < self._matched_until:
             return True
-        found = is_matching(self._asked) and (not self._topic.sinks or bool(self._topic.latched) or self._is_remote())
+        found = is_matching(self._matcher) and (not self._topic.sinks or bool(self._topic.latched) or self._is_remote())
         if found:
             self._matched_until = now + MATCH_LASTS
         return found
@@ -214,9 +214,9 @@ class ZenohOutlet(Declared):
     def shut(self, why: str) -> list[Any]:
         """Stop sending; return all publishers, the one for sending and those for matching."""
         self._topic = _NOBODY
-        left = self._used, self._asked, self._remote
+        left = self._used, self._matcher, self._remote
         self._used = _Gone(f"the publisher of {self.key[:200]} is of no use any more: {why}")
-        self._asked = self._remote = _Gone(why)
+        self._matcher = self._remote = _Gone(why)
         return list({id(each): each for each in left if each is not None}.values())
 
 

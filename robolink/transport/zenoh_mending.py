@@ -127,7 +127,7 @@ class Mending:
             for payload, attachment in messages:
                 try:
                     number, _, _, gid = fields_of(attachment)
-                except struct.error:  # of somebody who is no publisher of ROS 2
+                except struct.error:  # of somebody who is not a publisher of ROS 2
                     continue
                 last = self._last.get(gid)
                 if last is None or number > last:

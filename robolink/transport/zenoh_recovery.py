@@ -2,7 +2,7 @@
 
 Only RELIABLE topics, and only on networks that leave the machine. Each session with such publishers announces a token.
 When that is gone and back, or comes from another session of the same transport, or a link of it stands still, whoever
-knew it asks for what is newer than the last message that it has. Gaps alone are no reason to ask: `limits`
+knew it asks for what is newer than the last message that it has. Gaps alone are not a reason to ask: `limits`
 thin topics on purpose.
 """
 
@@ -194,8 +194,8 @@ class Recovery:
         offered.answers.wait(ANSWERED_WITHIN)
         payload = query.payload
         try:
-            asked = msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Asked])
-            for each in together(asked):  # so that nobody gets a topic twice
+            positions = msgspec.msgpack.decode(b"" if payload is None else payload.to_bytes(), type=list[Position])
+            for each in together(positions):  # so that nobody gets a topic twice
                 for part in self._retained(each):
                     with lifetime.inside:
                         query.reply(offered.key, part)  # dropped where its link is full, as the question asks
@@ -204,10 +204,10 @@ class Recovery:
         finally:
             declare.quietly(query.drop)
 
-    def _retained(self, asked: Asked) -> Iterator[bytes]:
+    def _retained(self, position: Position) -> Iterator[bytes]:
         for each in self._holdings.all():
-            if isinstance(each, RoamingOutlet) and each.cache is not None and each.key == asked.key:
-                yield from parts(asked.key, newer(each.cache.last(), asked))
+            if isinstance(each, RoamingOutlet) and each.cache is not None and each.key == position.key:
+                yield from parts(position.key, newer(each.cache.last(), position))
 
     def _declare_watch(self, plain: ZenohTransport) -> Handle:
         generation, pattern = _Generation(plain.session), f"{self._prefix}/*/*"
@@ -287,14 +287,14 @@ class Recovery:
                 _end(question.mendings)
 
     def _ask(self, session: Any, key: str, mendings: list[Mending]) -> None:
-        asked, by_topic = list[Asked](), dict[str, list[Mending]]()
+        positions, by_topic = list[Position](), dict[str, list[Mending]]()
         for each in mendings:
             topic, since = self._mendings.get(each) or ("", 0.0)
             if topic:
                 age = min(clocks.monotonic() - since, LONGEST_GONE)
-                asked.append(Asked(topic, int(age * 1e9), each.positions()))
+                positions.append(Position(topic, int(age * 1e9), each.positions()))
                 by_topic.setdefault(topic, []).append(each)
-        question = msgspec.msgpack.encode(together(asked))
+        question = msgspec.msgpack.encode(together(positions))
         gate, end = declare.make_gate(functools.partial(_take, by_topic)), declare.make_gate(_end, mendings)
         self._gates.update((gate, end))
         with lifetime.inside:
@@ -339,7 +339,7 @@ PART = 1 << 16
 """Size in bytes from which an answer is sent in several parts."""
 
 
-class Asked(NamedTuple):
+class Position(NamedTuple):
     """State of one subscription, for the publishers of its topic."""
 
     key: str
@@ -356,20 +356,20 @@ class Answer(NamedTuple):
     messages: list[tuple[bytes, bytes]]
 
 
-def newer(retained: Iterable[tuple[bytes, bytes]], asked: Asked) -> list[tuple[bytes, bytes]]:
-    """Return what is newer than what a subscription has, in the order of its numbers."""
-    since = clocks.now() - asked.age
-    found = [(number, each) for each in retained if (number := _newer(each[1], asked, since)) is not None]
+def newer(retained: Iterable[tuple[bytes, bytes]], position: Position) -> list[tuple[bytes, bytes]]:
+    """Return the messages newer than those that a subscription has, in the order of its numbers."""
+    since = clocks.now() - position.age
+    found = [(number, each) for each in retained if (number := _newer(each[1], position, since)) is not None]
     return [each for _, each in sorted(found, key=_number)]  # threads that publish may overtake each other
 
 
-def _newer(attachment: bytes, asked: Asked, since: int) -> int | None:
+def _newer(attachment: bytes, position: Position, since: int) -> int | None:
     """Return the number of a message; None if it is not newer than what has come."""
     try:
         number, at, _, gid = fields_of(attachment)
     except struct.error:  # not ROS 2's: without a number nothing can be asked for
         return None
-    last = asked.last.get(gid)
+    last = position.last.get(gid)
     is_newer = at >= since if last is None else number > last
     return number if is_newer else None
 
@@ -378,13 +378,13 @@ def _number(found: tuple[int, tuple[bytes, bytes]]) -> int:
     return found[0]
 
 
-def together(asked: Iterable[Asked]) -> list[Asked]:
+def together(positions: Iterable[Position]) -> list[Position]:
     """Return one question for each topic: for what any of its subscriptions lacks."""
-    found = dict[str, Asked]()
-    for each in asked:
+    found = dict[str, Position]()
+    for each in positions:
         other = found.get(each.key, each)
         last = other.last | {gid: min(number, other.last.get(gid, number)) for gid, number in each.last.items()}
-        found[each.key] = Asked(each.key, max(each.age, other.age), last)
+        found[each.key] = Position(each.key, max(each.age, other.age), last)
     return list(found.values())
 
 

@@ -12,9 +12,9 @@ import pytest
 import zenoh
 
 from robolink.networks import hosts
-from robolink.networks.asked import FIRST_PORT
 from robolink.networks.hosts import Host, parse, seek
 from robolink.networks.port_probe import PEER, ROUTER, SILENT, STRANGER, Port, listening
+from robolink.networks.request import FIRST_PORT
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
 from tests.support.domains import free_domain

@@ -43,7 +43,7 @@ ONE = '{"control": ["/cmd_vel"], "rate": {"/camera/image": 2.0}, "size": {"/map"
 )
 def test_a_mistake_is_one_line_with_its_place(text: str, reason: str) -> None:
     with pytest.raises(TransportError) as caught:
-        limits.wanted({"ROBOLINK_LIMITS": text})
+        limits.requested({"ROBOLINK_LIMITS": text})
     assert str(caught.value).startswith(f"ROBOLINK_LIMITS:{reason}")
     assert "\n" not in str(caught.value)
 
@@ -52,18 +52,18 @@ def test_a_file_of_limits(tmp_path: Path) -> None:
     path = tmp_path / "slow.yaml"
     environ = {"ROBOLINK_LIMITS": str(path)}
     path.write_text("rate:\n  /scan: 5\n")
-    assert limits.wanted(environ) == Limits(rate={"/scan": 5.0})
+    assert limits.requested(environ) == Limits(rate={"/scan": 5.0})
     path.write_text("rate:\n  /scan: 0\n")
     with pytest.raises(TransportError, match=r"^ROBOLINK_LIMITS: .*slow\.yaml:2:10: rate\./scan: expected messages"):
-        limits.wanted(environ)
+        limits.requested(environ)
     path.unlink()
     with pytest.raises(TransportError, match=r"^ROBOLINK_LIMITS: no file .*slow\.yaml"):
-        limits.wanted(environ)
+        limits.requested(environ)
 
 
 def test_unset_or_empty_is_no_limit() -> None:
-    assert limits.wanted({}) is None
-    assert limits.wanted({"ROBOLINK_LIMITS": " "}) is None
+    assert limits.requested({}) is None
+    assert limits.requested({"ROBOLINK_LIMITS": " "}) is None
 
 
 def test_the_settings_of_zenoh() -> None:
@@ -117,7 +117,7 @@ def test_a_network_of_the_file_has_its_own(tmp_path: Path) -> None:
     (tmp_path / "networks.yaml").write_text(FILE)
     environ = {"ROBOLINK_WORKSPACE": str(tmp_path)}
     far = network.plan("far", 0, environ)
-    assert (far.asked.value, far.limits) == ("lan", Limits(rate={"/camera/image": 2.0}))
+    assert (far.request.value, far.limits) == ("lan", Limits(rate={"/camera/image": 2.0}))
     assert network.plan("lab", 0, environ).limits == Limits(control=["/go"])
     assert network.plan("plain", 0, environ).limits is None
     given = environ | {"ROBOLINK_LIMITS": "{buffer: 8192}"}

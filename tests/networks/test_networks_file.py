@@ -56,21 +56,21 @@ def test_peers_alone_open_nothing_here(environ: dict[str, str]) -> None:
 
 
 def test_names_for_other_networks(environ: dict[str, str], tmp_path: Path) -> None:
-    assert network.plan("room", 0, environ).asked.value == "lan"
-    assert network.plan("router", 0, environ).asked.value == "tcp/10.0.0.9:7447"
-    assert network.plan("street", 0, environ).asked.value == str(tmp_path / "lab.json5")
+    assert network.plan("room", 0, environ).request.value == "lan"
+    assert network.plan("router", 0, environ).request.value == "tcp/10.0.0.9:7447"
+    assert network.plan("street", 0, environ).request.value == str(tmp_path / "lab.json5")
 
 
 def test_a_name_for_a_host(environ: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[hosts.Host] = []
+    request: list[hosts.Host] = []
 
     def seek(host: hosts.Host, domain: int) -> Port:
-        asked.append(host)
+        request.append(host)
         return Port(7447, ROUTER, "ab")
 
     monkeypatch.setattr(hosts, "seek", seek)
     found = network.plan("robot", 0, environ)
-    assert asked == [hosts.Host("10.0.0.1")]
+    assert request == [hosts.Host("10.0.0.1")]
     assert found.place == places.Place(("tcp/10.0.0.1:7447",), is_client=True, session="ab")
 
 

@@ -67,11 +67,11 @@ class Scene:
         store.permit_profiles("/robot", [Profile("/", "robot", ROBOT)])
         store.permit_profiles("/student1", [Profile("/student1", "node", STUDENT)])
         environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(store.path)}
-        security = session.wanted(environ, DOMAIN, "/robot")
+        security = session.requested(environ, DOMAIN, "/robot")
         assert security is not None
         self.port = free_port()
         self.robot = zenoh.open(self.config(session.settings(security), listen=True))
-        own = session.wanted(environ, DOMAIN, enclave)
+        own = session.requested(environ, DOMAIN, enclave)
         assert own is not None
         bare = session.settings(own) | {"access_control": {"enabled": False}}
         self.attacker = zenoh.open(self.config(bare, listen=False))

@@ -46,7 +46,7 @@ def test_each_folder_has_one_key_and_the_rights_of_all(folder: Path) -> None:
 
 def test_a_handed_out_folder_opens_sessions(folder: Path) -> None:
     environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(folder / "student1")}
-    found = session.wanted(environ, 0, "/student1")
+    found = session.requested(environ, 0, "/student1")
     assert found is not None
     assert session.settings(found)["transport/link/tls"]["enable_mtls"] is True
 

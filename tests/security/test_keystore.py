@@ -63,7 +63,7 @@ def test_files_that_others_may_change_are_told_in_one_line(store: Path, monkeypa
     environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(store)}
 
     def told() -> list[str]:
-        found = session.wanted(environ, 0, "/a")
+        found = session.requested(environ, 0, "/a")
         assert found is not None
         return found.warnings
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from robolink.exceptions import SecurityError, TransportError
-from robolink.networks.asked import FIRST_PORT
 from robolink.networks.refusals import of_holder, wants_keys
+from robolink.networks.request import FIRST_PORT
 from robolink.security.keystore import Keystore
 from robolink.transport import connect
 from tests.support.domains import free_domain

@@ -58,11 +58,11 @@ def test_permissions_that_have_ended_or_not_begun_give_no_rights_and_a_line(stor
         assert found["/robot"].allows("publish", "/a")
         [line] = mistakes
         assert line.startswith(f"{path}: these permissions {word} at {when:%Y-%m-%d %H:}")
-        own = session.wanted(os.environ, 0, "/robot")
+        own = session.requested(os.environ, 0, "/robot")
         assert own is not None
         assert own.warnings == [f"{line}: this enclave has no rights"]
         with pytest.raises(SecurityError, match=re.escape(f"enclave '/student': {line}")):
-            session.wanted(os.environ, 0, "/student")
+            session.requested(os.environ, 0, "/student")
 
 
 def test_a_denial_holds_at_any_time(store: Keystore) -> None:
@@ -137,7 +137,7 @@ class Session:
 def test_sessions_follow_the_end_of_anothers_permissions(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     """No file changes then."""
     limit(store, "/student", now() - HOUR, now() + HOUR)
-    security = session.wanted(os.environ, 0, "/robot")
+    security = session.requested(os.environ, 0, "/robot")
     assert security is not None
     robot = Session(security)
     watch = secured.Watch(robot)

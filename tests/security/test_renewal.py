@@ -13,7 +13,7 @@ from robolink.context import Context
 from robolink.exceptions import SecurityError, TransportError
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import UInt32
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.node import Node
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from robolink.security.keystore import Keystore

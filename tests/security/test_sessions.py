@@ -19,7 +19,7 @@ from robolink.context import Context
 from robolink.exceptions import SecurityError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.interfaces.std_srvs.srv import Trigger
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.parameter_client import AsyncParameterClient
 from robolink.security import session
 from robolink.security.keystore import KEY, Keystore
@@ -209,7 +209,7 @@ def test_security_that_is_off_is_off_without_a_word(
 
 def test_a_mistake_of_another_enclave_takes_its_rights_alone(store: Keystore) -> None:
     (store.folder("/robot") / "permissions.xml").write_text("<dds", encoding="utf-8")
-    security = session.wanted(os.environ, store.domain, "/student")
+    security = session.requested(os.environ, store.domain, "/student")
     assert security is not None
     assert len(security.warnings) == 1
     assert {each["id"] for each in session.settings(security)["access_control"]["subjects"]} == {"/student"}
@@ -293,6 +293,6 @@ def test_a_key_that_is_a_link_to_nothing_is_told(store: Keystore) -> None:
     key.unlink()
     key.symlink_to(key.with_name("gone.pem"))
     with pytest.raises(SecurityError) as caught:
-        session.wanted(os.environ, store.domain, "/student")
+        session.requested(os.environ, store.domain, "/student")
     assert str(caught.value) == f"the key of enclave '/student' is a link that leads nowhere: {key}"
     assert "/student" not in store.names()

@@ -12,7 +12,7 @@ import pytest
 import zenoh
 
 from robolink.exceptions import SecurityError
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.qos import QoSProfile
 from robolink.security import session
 from robolink.security.keystore import Keystore
@@ -56,7 +56,7 @@ def robot(store: Keystore) -> Iterator[Transport]:
 def attacker(store: Keystore, robot: Transport) -> Iterator[Any]:
     """A session with the student's key that looks at no rule."""
     environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(store.path)}
-    own = session.wanted(environ, store.domain, "/student")
+    own = session.requested(environ, store.domain, "/student")
     assert own is not None
     config = zenoh.Config()
     place = f"tls/127.0.0.1:{FIRST_PORT + store.domain}"
@@ -109,7 +109,7 @@ def test_an_endpoint_has_no_settings_that_open_what_security_closes(store: Keyst
     config = zenoh.Config()
     config.insert_json5(path, json.dumps([f"tls/127.0.0.1:0#{setting}"]))
     environ = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_KEYSTORE": str(store.path)}
-    own = session.wanted(environ, store.domain, "/robot")
+    own = session.requested(environ, store.domain, "/robot")
     assert own is not None
     with pytest.raises(SecurityError, match=r"has a setting of its own, '(enable_mtls|root_ca_certificate_base64)'"):
         session.secure(config, own)

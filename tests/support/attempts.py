@@ -28,8 +28,8 @@ from typing import Any, NamedTuple
 
 import zenoh
 
-from robolink.networks.asked import FIRST_PORT
 from robolink.networks.port_probe import listening
+from robolink.networks.request import FIRST_PORT
 from robolink.qos import QoSProfile
 from robolink.security.keystore import Keystore
 from robolink.security.policy import Rule

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import zenoh
 
 from robolink.exceptions import RobolinkError
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.security import authority, classroom, files, session
 from robolink.security.keystore import Keystore
 from robolink.transport import connect
@@ -209,7 +209,7 @@ def bare_config(
     environ: Mapping[str, str], domain: int, place: str, pair: tuple[Path, Path] | bool | None = True
 ) -> zenoh.Config:
     """Return the configuration of a client with the student's key, or another pair, and no rules."""
-    own = session.wanted(environ, domain)
+    own = session.requested(environ, domain)
     assert own is not None
     tls = session.settings(own)["transport/link/tls"]
     if pair is not True:

@@ -24,7 +24,7 @@ from pathlib import Path
 
 import psutil
 
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.supervisor.reporting.logs import MOST_RUNS
 from robolink.transport.port_sharing import free_domain, is_free
 

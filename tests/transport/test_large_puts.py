@@ -32,7 +32,7 @@ def counted(zenoh_net: Network, monkeypatch: pytest.MonkeyPatch) -> tuple[Any, C
     """Return an outlet and its publisher; it asks before each put who listens."""
     monkeypatch.setattr(zenoh_handles, "MATCH_LASTS", 0.0)
     outlet: Any = zenoh_net.session().advertise(CHATTER, PLAIN)
-    outlet._used = outlet._asked = publisher = CountedPublisher(outlet._used)
+    outlet._used = outlet._matcher = publisher = CountedPublisher(outlet._used)
     return outlet, publisher
 
 

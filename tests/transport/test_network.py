@@ -11,8 +11,8 @@ import pytest
 import zenoh
 
 from robolink.exceptions import TransportError
-from robolink.networks import asked
-from robolink.networks.asked import FIRST_PORT, NAMES, ROS_ROUTER, checked_domain, domain_id, wanted
+from robolink.networks import request
+from robolink.networks.request import FIRST_PORT, NAMES, ROS_ROUTER, checked_domain, domain_id, requested
 from robolink.networks.settings import client, most_pending, settings
 from robolink.transport import network
 
@@ -38,7 +38,7 @@ def test_security_that_is_switched_off_takes_no_recovery_away(value: str | None)
 
 
 @pytest.mark.parametrize(
-    ("argument", "environ", "asked_by", "value"),
+    ("argument", "environ", "origin", "value"),
     [
         (None, {}, "ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"),
         (None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}, "ROS_AUTOMATIC_DISCOVERY_RANGE", "localhost"),
@@ -49,15 +49,15 @@ def test_security_that_is_switched_off_takes_no_recovery_away(value: str | None)
         ("off", {"ROBOLINK_NETWORK": "subnet"}, "network", "off"),
     ],
 )
-def test_which_network(argument: str | None, environ: dict[str, str], asked_by: str | None, value: str) -> None:
-    found = wanted(argument, environ)
-    assert found == (asked_by or "ZENOH_SESSION_CONFIG_URI", value)
+def test_which_network(argument: str | None, environ: dict[str, str], origin: str | None, value: str) -> None:
+    found = requested(argument, environ)
+    assert found == (origin or "ZENOH_SESSION_CONFIG_URI", value)
 
 
 def test_an_error_names_the_word_that_was_used() -> None:
     """The option of the command line is handed on in variables, also to processes that a launch starts."""
     environ = {"ROBOLINK_NETWORK": "localhost"}
-    asked.ask(environ, "sub/nett", "--network")
+    request.ask(environ, "sub/nett", "--network")
     assert refusal(environ).startswith("--network: no network, host or file 'sub/nett'")
     environ["ROBOLINK_NETWORK"] = "no=where"  # which a node's own environment says
     assert refusal(environ).startswith("ROBOLINK_NETWORK: no network, host or file 'no=where'")
@@ -65,7 +65,7 @@ def test_an_error_names_the_word_that_was_used() -> None:
 
 def test_an_unknown_range() -> None:
     with pytest.raises(TransportError, match="LOCALHOST, SUBNET, OFF, got 'WORLD'"):
-        wanted(None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"})
+        requested(None, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "WORLD"})
 
 
 @pytest.mark.parametrize(("platform", "interface"), [("linux", "lo"), ("darwin", "lo0")])
@@ -128,7 +128,7 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
 def test_overrides_that_name_a_network_are_asked_for_that(override: str) -> None:
     """Nothing stays on that keeps a session on this machine: neither the access control nor the rendezvous."""
     environ = {"ZENOH_CONFIG_OVERRIDE": f"scouting/delay=7; {override}"}
-    found = wanted("localhost", environ)
+    found = requested("localhost", environ)
     assert found == ("ZENOH_CONFIG_OVERRIDE", override)
     assert not network.meets_at_port(found.value, environ)
     config = network.load(None, 0, environ)
@@ -147,15 +147,15 @@ def test_overrides_that_name_a_mode_only_go_where_ros_2_goes() -> None:
 
 def test_another_network_that_was_named_stays_what_it_is() -> None:
     environ = {"ZENOH_CONFIG_OVERRIDE": 'connect/endpoints=["tcp/10.0.0.1:7447"]'}
-    assert wanted("subnet", environ) == ("network", "lan")
-    assert wanted("off", environ) == ("network", "off")
+    assert requested("subnet", environ) == ("network", "lan")
+    assert requested("off", environ) == ("network", "off")
 
 
 def test_overridden_access_control_is_not_mixed_with_ours() -> None:
     environ = {"ZENOH_CONFIG_OVERRIDE": 'access_control/enabled=true;access_control/default_permission="allow"'}
     found = json.loads(network.load(None, 0, environ).get_json("access_control"))
     assert (found["enabled"], found["default_permission"], found["rules"]) == (True, "allow", None)
-    assert network.meets_at_port(wanted(None, environ).value, environ)
+    assert network.meets_at_port(requested(None, environ).value, environ)
 
 
 def test_overrides_have_the_last_word() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from tests.support import stalls
 from tests.support.authority import can_make, make_authority, make_certificate
 from tests.support.machines import HERE, NODE, ROUTER, THERE, Machines, nodes

@@ -20,7 +20,7 @@ from robolink.transport.reach import Link, Reach
 from robolink.transport.roaming import RoamingTransport
 from robolink.transport.roaming_handles import Holdings, RoamingSubscription
 from robolink.transport.zenoh_mending import Mending
-from robolink.transport.zenoh_recovery import Answer, Asked, Recovery, newer, parts, together
+from robolink.transport.zenoh_recovery import Answer, Position, Recovery, newer, parts, together
 from tests.support.ports import free_port
 from tests.support.transports import BEST_EFFORT, CHATTER, KEEP_ALL, OTHER, PLAIN, Ear, latched, stamped, until
 
@@ -40,26 +40,26 @@ def numbers(passed: list[Sample]) -> list[int]:
 
 def test_who_asks_gets_what_is_newer_than_what_it_has() -> None:
     retained = [sample(number) for number in (3, 4, 5)]
-    assert newer(retained, Asked("key", 0, {GID: 0})) == retained
-    assert newer(retained, Asked("key", 0, {GID: 4})) == [sample(5)]
+    assert newer(retained, Position("key", 0, {GID: 0})) == retained
+    assert newer(retained, Position("key", 0, {GID: 4})) == [sample(5)]
 
 
 def test_a_subscription_gets_of_unknown_publishers_what_is_younger_than_itself() -> None:
     now = time.time_ns()
     old, new = (b"old", stamped(1, at=now - 100 * 10**9)), (b"new", stamped(2, at=now))
-    assert newer([old, new, (b"plain", b"no number")], Asked("key", 60 * 10**9, {})) == [new]
+    assert newer([old, new, (b"plain", b"no number")], Position("key", 60 * 10**9, {})) == [new]
 
 
 def test_an_answer_is_in_the_order_of_numbers_though_threads_overtook_each_other() -> None:
     retained = [sample(number) for number in (1, 3, 2, 4)]
-    assert newer(retained, Asked("key", 0, {GID: 1})) == [sample(number) for number in (2, 3, 4)]
+    assert newer(retained, Position("key", 0, {GID: 1})) == [sample(number) for number in (2, 3, 4)]
 
 
 def test_a_topic_is_asked_for_once_for_all_of_its_subscriptions() -> None:
     other = b"%16d" % 1
-    asked = [Asked("key", 5, {GID: 7}), Asked("other", 1, {}), Asked("key", 9, {GID: 3, other: 2})]
-    assert together(asked) == [Asked("key", 9, {GID: 3, other: 2}), Asked("other", 1, {})]
-    assert together(asked[::-1])[0] == Asked("key", 9, {GID: 3, other: 2})
+    positions = [Position("key", 5, {GID: 7}), Position("other", 1, {}), Position("key", 9, {GID: 3, other: 2})]
+    assert together(positions) == [Position("key", 9, {GID: 3, other: 2}), Position("other", 1, {})]
+    assert together(positions[::-1])[0] == Position("key", 9, {GID: 3, other: 2})
 
 
 def test_an_answer_comes_in_parts_that_are_not_too_large() -> None:
@@ -214,11 +214,11 @@ def test_nonsense_is_no_question_and_no_answer(make_cut: MakeCut) -> None:
     for payload in (None, b"", b"nonsense", msgspec.msgpack.encode([1, 2])):
         assert list(net.there.plain.session.get(pattern, payload=payload, timeout=5.0)) == []
     replies = net.there.plain.session.get(
-        pattern, payload=msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})]), timeout=5.0
+        pattern, payload=msgspec.msgpack.encode([Position(CHATTER, 10**12, {})]), timeout=5.0
     )
     (answer,) = [msgspec.msgpack.decode(each.ok.payload.to_bytes(), type=Answer) for each in replies]
     assert answer.key == CHATTER
-    greedy = msgspec.msgpack.encode([Asked(CHATTER, 10**12, {})] * 1000)
+    greedy = msgspec.msgpack.encode([Position(CHATTER, 10**12, {})] * 1000)
     every = zenoh.ConsolidationMode.NONE
     assert len(list(net.there.plain.session.get(pattern, payload=greedy, timeout=5.0, consolidation=every))) == 1
     mending = Mending(nothing)

@@ -9,7 +9,7 @@ import pytest
 
 from robolink.exceptions import TransportError
 from robolink.transport import network, shared_memory
-from robolink.transport.shared_memory import LEAST_FREE, LEAST_LOCKABLE, POOL, Machine, decide, this_machine, wanted
+from robolink.transport.shared_memory import LEAST_FREE, LEAST_LOCKABLE, POOL, Machine, decide, decision, this_machine
 
 ROOMY = Machine(total=2**30, free=2**30)
 TIGHT = ROOMY._replace(lockable=8 * 2**20)
@@ -48,22 +48,22 @@ def test_each_session_may_still_take_its_pool_of_what_is_free() -> None:
 @pytest.mark.parametrize("machine", [ROOMY, TIGHT])
 def test_the_user_has_the_last_word(machine: Machine) -> None:
     for choice in ("on", "off"):
-        found = wanted({shared_memory.VARIABLE: choice}, machine)
+        found = decision({shared_memory.VARIABLE: choice}, machine)
         assert found.on == (choice == "on")
         assert found.forced
     for environ in ({}, {shared_memory.VARIABLE: ""}, {shared_memory.VARIABLE: "auto"}):
-        assert wanted(environ, machine) == decide(machine)
+        assert decision(environ, machine) == decide(machine)
 
 
 def test_forced_on_without_room_says_what_is_wrong() -> None:
-    found = wanted({shared_memory.VARIABLE: "on"}, TIGHT)
+    found = decision({shared_memory.VARIABLE: "on"}, TIGHT)
     assert found.reason.startswith("ROBOLINK_SHARED_MEMORY=on, although this process may lock 8 MB")
     assert "ulimit" in found.remedy
 
 
 def test_another_word_is_an_error_in_one_line() -> None:
     with pytest.raises(TransportError) as caught:
-        wanted({shared_memory.VARIABLE: "yes\n" + "s" * 1000}, ROOMY)
+        decision({shared_memory.VARIABLE: "yes\n" + "s" * 1000}, ROOMY)
     assert str(caught.value).startswith("ROBOLINK_SHARED_MEMORY must be one of auto, on, off, got 'yes")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 130
@@ -104,7 +104,7 @@ def test_a_client_shares_no_memory_with_its_router_unless_told_so() -> None:
     assert not shares({"ZENOH_CONFIG_OVERRIDE": 'mode="client"'})
     assert shares({"ZENOH_CONFIG_OVERRIDE": 'mode="peer"'})
     assert shares({**client, shared_memory.VARIABLE: "on"})
-    assert "a router passes all messages on" in wanted({}, ROOMY, mode="client").reason
+    assert "a router passes all messages on" in decision({}, ROOMY, mode="client").reason
 
 
 @pytest.mark.parametrize("in_file", ["true", "false"])

@@ -16,7 +16,7 @@ import pytest
 import zenoh
 
 from robolink.exceptions import TransportError
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.networks.settings import most_pending
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from robolink.cli.doctor.facts import Check, ClockOffset, Facts, Verdict, count, listed
-from robolink.networks.asked import NETWORK
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, Port
 from robolink.networks.refusals import HAS_NO_KEYS, WANTS_KEYS
+from robolink.networks.request import NETWORK
 from robolink.transport.reach import on_this_machine
 from robolink.transport.shared_memory import VARIABLE, decide
 from robolink.wire import NodeToken
@@ -95,11 +95,11 @@ def settings(facts: Facts) -> Verdict:
         )
     if expected.transport != "zenoh":
         warnings.append(f"ROBOLINK_TRANSPORT={expected.transport[:80]}: nodes see only their own process")
-    said = expected.asked_by if expected.asked_by in _NOTED else NETWORK  # which the command line or a launch file sets
+    said = expected.origin if expected.origin in _NOTED else NETWORK  # which the command line or a launch file sets
     noted = [name for name in _NOTED if environ.get(name) and name != said]
     in_force = [f"{name}={environ[name][:80]}" for name in noted]
     domain = f"domain {expected.domain} ({'ROS_DOMAIN_ID' if environ.get('ROS_DOMAIN_ID') else 'the default'})"
-    network = f"network {expected.network} ({expected.asked_by or 'the default'})"
+    network = f"network {expected.network} ({expected.origin or 'the default'})"
     return Verdict(", ".join([domain, network, *in_force]), expected.errors, tuple(warnings))
 
 

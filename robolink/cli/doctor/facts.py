@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from robolink.cli.doctor.ports import Holder
-from robolink.networks.asked import FIRST_PORT
 from robolink.networks.port_probe import Port
+from robolink.networks.request import FIRST_PORT
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
 from robolink.transport.reach import Link, Reach
@@ -19,8 +19,8 @@ class Settings(NamedTuple):
 
     domain: int = 0
     network: str = "localhost"
-    """Network as it was asked for: see `robolink.networks.asked.Wanted`."""
-    asked_by: str = ""
+    """Network as it was asked for: see `robolink.networks.request.NetworkRequest`."""
+    origin: str = ""
     """Environment variable that asks for this network; empty for the default."""
     transport: str = "zenoh"
     meets: bool = True

@@ -16,9 +16,9 @@ from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
 from robolink.extensions import registries
-from robolink.networks.asked import FIRST_PORT, RANGE, ROS_ROUTER, Wanted, domain_id, wanted
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
+from robolink.networks.request import FIRST_PORT, RANGE, ROS_ROUTER, NetworkRequest, domain_id, requested
 from robolink.security import session
 from robolink.transport import certificates, lifetime, network, shared_memory
 from robolink.transport.reach import Reach, answering, reach
@@ -100,13 +100,13 @@ def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | 
     """
     errors: list[str] = []
     domain = _try(errors, 0, lambda: domain_id(environ))
-    asked_by, value = _try(errors, Wanted("", "localhost"), lambda: wanted(None, environ))
+    origin, value = _try(errors, NetworkRequest("", "localhost"), lambda: requested(None, environ))
     found = None if errors else _try(errors, None, lambda: network.plan(None, domain, environ))
     config = None if found is None else _try(errors, None, found.config)
     settings = Settings(
         domain=domain,
         network=value,
-        asked_by="" if asked_by == RANGE and not environ.get(asked_by) else asked_by,
+        origin="" if origin == RANGE and not environ.get(origin) else origin,
         transport=environ.get("ROBOLINK_TRANSPORT") or "zenoh",
         meets=network.meets_at_port(value, environ) if found is None else found.meets,
         shared_memory=config is None or config.get_json(network.SHARES_MEMORY) == "true",
@@ -125,7 +125,7 @@ def _try(errors: list[str], otherwise: ResultT, action: Callable[[], ResultT]) -
 
 def _memory(settings: Settings, machine: shared_memory.Machine, mode: str) -> shared_memory.Decision:
     """Return the use of shared memory by sessions of this mode with these settings, and the reason."""
-    found = shared_memory.wanted({} if settings.errors else os.environ, machine, mode)
+    found = shared_memory.decision({} if settings.errors else os.environ, machine, mode)
     if found.on == settings.shared_memory:
         return found
     by = "ZENOH_CONFIG_OVERRIDE or the network's file decides"
@@ -177,7 +177,7 @@ def _with_certificates(facts: Facts, config: zenoh.Config) -> Facts:
     """Add the problems of the settings' certificates, and of the keystore's files."""
     errors = [*(certificates.faults(config) or certificates.refusals(config))]
     doubts = [] if errors else certificates.doubts(config)
-    security = _try(errors, None, lambda: session.wanted(os.environ, facts.settings.domain))
+    security = _try(errors, None, lambda: session.requested(os.environ, facts.settings.domain))
     return facts._replace(
         certificate_errors=tuple(errors),
         certificate_warnings=(*doubts, *(security.warnings if security else ())),

@@ -47,7 +47,7 @@ class Description(NamedTuple):
     """Description of a session's network; the fields are those of `--json`."""
 
     network: str
-    asked_by: str
+    origin: str
     domain: int
     meets: str
     listens: list[str]
@@ -70,7 +70,7 @@ def describe(facts: Facts) -> Description:
     settings, reach = facts.settings, facts.reach
     return Description(
         settings.network,
-        settings.asked_by,
+        settings.origin,
         settings.domain,
         str(reach),
         [*reach.listens],
@@ -116,7 +116,7 @@ def how(link: Link, facts: Facts) -> str:
 
 def lines(found: Description) -> list[str]:
     """Return the description as lines for people."""
-    requested = f"asked for by {found.asked_by}" if found.asked_by else "the default"
+    requested = f"asked for by {found.origin}" if found.origin else "the default"
     goes = [*([f"multicast {found.multicast}"] if found.multicast else []), *found.connects]
     sessions = {each["session"] for each in found.links}
     whom = f"{len(sessions)} session{'s' * (len(sessions) != 1)}, {found.nodes} node{'s' * (found.nodes != 1)}"
@@ -153,8 +153,8 @@ def limit(
     import os
 
     from robolink.cli.shared.output import say, say_json
-    from robolink.networks.asked import domain_id
     from robolink.networks.limits import Limits, beyond_loopback, settings
+    from robolink.networks.request import domain_id
 
     in_force = _of_file(file) if file else _in_force()
     limits = in_force.limits or Limits()
@@ -189,11 +189,11 @@ def _of_file(path: Path) -> InForce:
 def _in_force() -> InForce:
     import os
 
-    from robolink.networks.asked import wanted
     from robolink.networks.limits import VARIABLE
+    from robolink.networks.request import requested
     from robolink.transport import network
 
-    limits = network.limits_wanted(wanted(None, os.environ), os.environ)
+    limits = network.limits_for(requested(None, os.environ), os.environ)
     return InForce(VARIABLE if os.environ.get(VARIABLE) else "networks.yaml" if limits else "", limits)
 
 

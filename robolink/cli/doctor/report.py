@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from robolink.cli.doctor.facts import Facts
 from robolink.cli.doctor.graph_checks import SILENT_TOPICS
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.wire import EndpointKind, EndpointToken, NodeToken
 
 _ROS = ("ROS_", "RMW_", "ZENOH_", "ROBOLINK_", "AMENT_")
@@ -52,7 +52,7 @@ def _network(facts: Facts) -> list[tuple[str, str]]:
     settings = facts.settings
     return [
         ("network", settings.network),
-        ("asked for by", settings.asked_by or "nobody (the default)"),
+        ("asked for by", settings.origin or "nobody (the default)"),
         ("transport", settings.transport),
         ("nodes meet", str(facts.reach)),
         *(("link", f"{each.role} at {each.there}") for each in facts.seen.links),

@@ -297,7 +297,7 @@ def _join_network(entries: Sequence[Entry]) -> None:
     import os
 
     from robolink.launch.planning import network_of
-    from robolink.networks.asked import ALIASES, NAMES, NETWORK, ask, domain_id
+    from robolink.networks.request import ALIASES, NAMES, NETWORK, ask, domain_id
 
     given = network_of(entries, os.environ)
     os.environ.update(given)  # not in each node's `env`, with which none can be forked

@@ -86,7 +86,7 @@ def make_class(
     """Create keys for each student of a class, or let one of them drive the robot."""
     import os
 
-    from robolink.networks.asked import domain_id
+    from robolink.networks.request import domain_id
     from robolink.security import classroom
 
     if not students and not turn:
@@ -152,7 +152,7 @@ def generate_policy(policy: PolicyFile) -> None:
 def _keystore(root: Path) -> Keystore:
     import os
 
-    from robolink.networks.asked import domain_id
+    from robolink.networks.request import domain_id
     from robolink.security.keystore import Keystore
 
     return Keystore(root, domain_id(os.environ))

@@ -251,7 +251,7 @@ def _look(texts: dict[str, bool], complete: threading.Event) -> None:
     """Collect announced tokens as they become known, and set `complete` when that is all."""
     import os
 
-    from robolink.networks.asked import domain_id
+    from robolink.networks.request import domain_id
     from robolink.transport import connect
     from robolink.wire import graph_pattern
 

@@ -12,7 +12,7 @@ from robolink.context import Context
 from robolink.exceptions import RobolinkError, WireError, nearest
 from robolink.graph.graph import NamesAndTypes, Token, names_and_types
 from robolink.interfaces import is_named
-from robolink.networks.asked import FIRST_PORT, wanted
+from robolink.networks.request import FIRST_PORT, requested
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.system.terminal import shown
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken, graph_pattern, parse_token
@@ -79,7 +79,7 @@ def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[
 
 
 def show_names(found: Mapping[str, list[str]], *, types: bool = False, count: bool = False, json: bool = False) -> None:
-    """Show a line for each name, with its types if wanted, or how many there are."""
+    """Show a line for each name, with its types if requested, or how many there are."""
     if json:
         say_json(len(found) if count else found)
     elif count:
@@ -160,7 +160,7 @@ def _met_on_this_machine(own: int) -> list[int]:
     from robolink.networks.port_probe import listening
     from robolink.transport import network
 
-    if not network.meets_at_port(wanted(None, os.environ).value, os.environ):
+    if not network.meets_at_port(requested(None, os.environ).value, os.environ):
         return []
     ports = (FIRST_PORT + each for each in range(LAST_DOMAIN + 1) if each != own)
     with contextlib.suppress(OSError):

@@ -17,7 +17,7 @@ from robolink.launch.looking.graph import Use, uses_of
 from robolink.launch.looking.look import End, Look, looks_of
 from robolink.launch.planning import core_errors, processes
 from robolink.launch.readiness import awaited
-from robolink.networks.asked import domain_id
+from robolink.networks.request import domain_id
 from robolink.security import session
 from robolink.security.rights import Rights
 from robolink.security.session import Security
@@ -269,7 +269,7 @@ def _security_key(entry: Entry) -> tuple[tuple[str, str], ...]:
 def _security(environ: Mapping[str, str], enclave: str) -> Security | str | None:
     """Return the security of a node; why there is none; None where security is off."""
     try:
-        return session.wanted(environ, domain_id(environ), enclave or None)
+        return session.requested(environ, domain_id(environ), enclave or None)
     except (RobolinkError, ValueError) as error:
         return str(error)
 

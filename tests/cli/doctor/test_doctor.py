@@ -25,7 +25,7 @@ from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.qos import QoSProfile
 from robolink.transport import Query, Transport, shared_memory
 from robolink.wire import (

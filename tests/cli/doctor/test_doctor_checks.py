@@ -14,7 +14,7 @@ from robolink.networks import port_probe
 from robolink.networks.port_probe import Port
 from robolink.transport import shared_memory
 from robolink.transport.reach import Link, Reach
-from robolink.transport.shared_memory import Decision, Machine, decide, wanted
+from robolink.transport.shared_memory import Decision, Machine, decide, decision
 from robolink.wire import NodeToken
 
 
@@ -72,9 +72,9 @@ def test_opencv_is_there_once_and_fits(found: dict[str, str], numpy: str, said: 
         ({}, Settings()),
         ({"ROS_DOMAIN_ID": "7"}, Settings(domain=7)),
         ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "off"},
-         Settings(network="off", asked_by="ROS_AUTOMATIC_DISCOVERY_RANGE", meets=False)),
+         Settings(network="off", origin="ROS_AUTOMATIC_DISCOVERY_RANGE", meets=False)),
         ({"ROBOLINK_NETWORK": "tcp/10.0.0.1:7447"},
-         Settings(network="tcp/10.0.0.1:7447", asked_by="ROBOLINK_NETWORK", meets=False, shared_memory=False)),
+         Settings(network="tcp/10.0.0.1:7447", origin="ROBOLINK_NETWORK", meets=False, shared_memory=False)),
         ({"ZENOH_CONFIG_OVERRIDE": "transport/shared_memory/enabled=false"}, Settings(shared_memory=False)),
         ({"ROBOLINK_SHARED_MEMORY": "off"}, Settings(shared_memory=False)),
         ({"ROBOLINK_TRANSPORT": "memory"}, Settings(transport="memory")),
@@ -257,7 +257,7 @@ def test_shared_memory_that_is_off_is_explained_and_no_warning() -> None:
 
 def test_shared_memory_that_is_forced_on_where_it_is_not_safe_is_a_warning() -> None:
     full = Machine(total=64 * 2**20, free=10 * 2**20)
-    forced = checks.memory(Facts(machine=full, memory=wanted({"ROBOLINK_SHARED_MEMORY": "on"}, full)))
+    forced = checks.memory(Facts(machine=full, memory=decision({"ROBOLINK_SHARED_MEMORY": "on"}, full)))
     assert "ROBOLINK_SHARED_MEMORY=on, although 10 MB of /dev/shm are free" in only(forced.warnings)
     by_zenoh = checks.memory(Facts(machine=full, memory=Decision(True, "an override decides", forced=True)))
     assert by_zenoh.level == WARNING
@@ -266,7 +266,7 @@ def test_shared_memory_that_is_forced_on_where_it_is_not_safe_is_a_warning() -> 
 def test_shared_memory_that_is_on_where_there_is_room_is_fine() -> None:
     roomy = Machine(total=2**30, free=2**30)
     for environ in ({}, {"ROBOLINK_SHARED_MEMORY": "on"}):
-        assert checks.memory(Facts(machine=roomy, memory=wanted(environ, roomy))).level == OK
+        assert checks.memory(Facts(machine=roomy, memory=decision(environ, roomy))).level == OK
 
 
 def test_a_machine_that_does_not_reach_itself_is_an_error() -> None:

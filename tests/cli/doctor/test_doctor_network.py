@@ -25,7 +25,7 @@ def said(facts: Facts) -> list[str]:
 
 def test_whom_it_has_found_and_how() -> None:
     token = NodeToken(0, "cc", "0", "0", "far", "/")
-    settings = Settings(network="lan", asked_by="ROBOLINK_NETWORK")
+    settings = Settings(network="lan", origin="ROBOLINK_NETWORK")
     assert said(Facts(settings=settings, reach=LAN, seen=Seen("ee", (token,), links=(HERE, ROUTED, FAR)))) == [
         "network   lan (asked for by ROBOLINK_NETWORK), domain 0",
         "meets     the local network (multicast 224.0.0.224:17447)",

@@ -8,7 +8,7 @@ import pytest
 
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import String
-from robolink.networks.asked import FIRST_PORT
+from robolink.networks.request import FIRST_PORT
 from robolink.qos import DurabilityPolicy, QoSProfile
 from tests.support.interop import Robot, robot, until
 from tests.support.ros2_peer import ADD_TWO_INTS, LATCHED, STRING, Peer, free_port, packed_ints, packed_string

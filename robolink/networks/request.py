@@ -30,7 +30,7 @@ ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
 NETWORK = "ROBOLINK_NETWORK"
 """Variable that names a network."""
 
-ASKED_BY = "ROBOLINK_NETWORK_ASKED_BY"
+ORIGIN = "ROBOLINK_NETWORK_ASKED_BY"
 """Variable beside it, `WORD=VALUE`, with the word that a person used for this value: errors name that one."""
 
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
@@ -43,10 +43,10 @@ _RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localho
 _NAMES_A_NETWORK = re.compile(r"mode|(connect|listen)(/endpoints.*)?")
 
 
-class Wanted(NamedTuple):
+class NetworkRequest(NamedTuple):
     """A requested network."""
 
-    asked_by: str
+    origin: str
     """Option or variable to name in an error."""
     value: str
     """One of NAMES, a host, an endpoint, a name or path of a file, or overrides that name a network of their own."""
@@ -60,53 +60,53 @@ def domain_id(environ: Mapping[str, str]) -> int:
     return checked_domain(int(text), "ROS_DOMAIN_ID")
 
 
-def checked_domain(domain: int, asked_by: str = "the domain id") -> int:
+def checked_domain(domain: int, origin: str = "the domain id") -> int:
     """Return `domain`; raises TransportError unless it is one of ROS 2's, 0 to 232."""
     if not 0 <= domain <= LAST_DOMAIN:
-        raise TransportError(f"{asked_by} must be a number from 0 to {LAST_DOMAIN}, got {domain}")
+        raise TransportError(f"{origin} must be a number from 0 to {LAST_DOMAIN}, got {domain}")
     return domain
 
 
-def wanted(network: str | None, environ: Mapping[str, str]) -> Wanted:
+def requested(network: str | None, environ: Mapping[str, str]) -> NetworkRequest:
     """Return the requested network: by argument, by variable, or else this machine's own.
 
     The variables are ROBOLINK_NETWORK, ZENOH_SESSION_CONFIG_URI and ROS_AUTOMATIC_DISCOVERY_RANGE, in this order.
     Endpoints or a mode in ZENOH_CONFIG_OVERRIDE name a network too, in place of this machine's own.
     """
-    found = _asked_for(network, environ)
+    found = _named_by(network, environ)
     found = found._replace(value=ALIASES.get(found.value, found.value))
     named = network_of_overrides(environ)
-    return Wanted(OVERRIDE, named) if named and found.value == "localhost" else found
+    return NetworkRequest(OVERRIDE, named) if named and found.value == "localhost" else found
 
 
-def _asked_for(network: str | None, environ: Mapping[str, str]) -> Wanted:
+def _named_by(network: str | None, environ: Mapping[str, str]) -> NetworkRequest:
     if network:
-        return Wanted("network", network)
+        return NetworkRequest("network", network)
     if value := environ.get(NETWORK):
-        return Wanted(_word_for(value, environ), value)
+        return NetworkRequest(_word_for(value, environ), value)
     if value := environ.get("ZENOH_SESSION_CONFIG_URI"):
-        return Wanted("ZENOH_SESSION_CONFIG_URI", value)
+        return NetworkRequest("ZENOH_SESSION_CONFIG_URI", value)
     reach = environ.get(RANGE, "")
     if reach.upper() not in _RANGES:
         known = ", ".join(filter(None, _RANGES))
         raise TransportError(f"{RANGE} must be one of {known}, got {reach[:40]!r}")
-    return Wanted(RANGE, _RANGES[reach.upper()])
+    return NetworkRequest(RANGE, _RANGES[reach.upper()])
 
 
-def ask(environ: MutableMapping[str, str], value: str, asked_by: str) -> None:
+def ask(environ: MutableMapping[str, str], value: str, origin: str) -> None:
     """Set the variables of a network, for this process and those that it starts.
 
     Args:
         environ: Variables, which are changed.
         value: The network.
-        asked_by: Word by which a person asked for it, such as an option of the command line, to name in an error.
+        origin: Word by which a person asked for it, such as an option of the command line, to name in an error.
     """
-    environ[NETWORK], environ[ASKED_BY] = value, f"{asked_by}={value}"
+    environ[NETWORK], environ[ORIGIN] = value, f"{origin}={value}"
 
 
 def _word_for(value: str, environ: Mapping[str, str]) -> str:
-    word = environ.get(ASKED_BY, "").removesuffix(f"={value}")
-    return word if word and word != environ[ASKED_BY] else NETWORK  # else somebody has set another one since
+    word = environ.get(ORIGIN, "").removesuffix(f"={value}")
+    return word if word and word != environ[ORIGIN] else NETWORK  # else somebody has set another one since
 
 
 def overrides(environ: Mapping[str, str]) -> list[tuple[str, str]]:
