@@ -297,19 +297,19 @@ class IntrospectionClient(Observed):
         super().__init__("introspection_client")
         self.client = self.create_client(AddTwoInts, "add_two_ints")
         self.configure_by("client_configure_introspection", self.client)
-        self.asked: Future[Any] | None = None
+        self.answer: Future[Any] | None = None
         self.create_timer(0.5, self.on_timer)
 
     def on_timer(self) -> None:
         """Ask, or log the answer to the last question."""
         if not self.client.service_is_ready():
             return
-        if self.asked is None:
-            self.asked = self.client.call_async(AddTwoInts.Request(a=2, b=3))
-        elif self.asked.done():
-            answer: Any = self.asked.result()
+        if self.answer is None:
+            self.answer = self.client.call_async(AddTwoInts.Request(a=2, b=3))
+        elif self.answer.done():
+            answer: Any = self.answer.result()
             self.get_logger().info(f"Result of add_two_ints: {answer.sum}")
-            self.asked = None
+            self.answer = None
 
 
 def run_introspection(args: list[str] | None = None) -> None:
