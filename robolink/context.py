@@ -17,7 +17,7 @@ from robolink import signals
 from robolink.arguments.command_line import Arguments, parse_arguments
 from robolink.arguments.undeclared import GivenParameters
 from robolink.constants import LAST_DOMAIN
-from robolink.exceptions import NotInitializedException, RobolinkError, imported_as
+from robolink.exceptions import SIGNAL, NotInitializedException, RobolinkError, imported_as
 from robolink.graph import humble
 from robolink.running.defaults import get_defaults
 from robolink.running.inbox import Inbox, Sweepable
@@ -222,7 +222,7 @@ class Context:
     def ended_by(self) -> str:
         """Cause of the context's end, in words; '' if it has not begun or not ended."""
         if self.interrupted:
-            return "a signal (Ctrl-C or SIGTERM)"
+            return SIGNAL
         return f"{imported_as()}.shutdown()" if self._closed else ""
 
     def interrupt(self, *, by_sigterm: bool = False) -> None:

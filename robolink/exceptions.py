@@ -181,10 +181,16 @@ def imported_as() -> str:
     return "rclpy" if sys.modules.get("rclpy", "") is sys.modules["robolink"] else "robolink"
 
 
+SIGNAL = "a signal (Ctrl-C or SIGTERM)"
+"""Cause of a context's end by a signal."""
+
+
 class NotInitializedException(RobolinkError, RuntimeError):
     """robolink was used before `init()`, or after its context's end by what `ended_by` names; for `message`."""
 
     def __init__(self, message: str | None = None, *, ended_by: str = "") -> None:
+        self.by_signal = ended_by == SIGNAL
+        """True if a signal ended the context: the program was on its way to spin when it came."""
         why = f"{ended_by} has ended the context" if ended_by else f"{imported_as()}.init() has not been called"
         super().__init__(why + (f": {message}" if message else ""))
 

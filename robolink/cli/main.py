@@ -16,7 +16,7 @@ from robolink.cli.launching.hashing import begin_steadily
 from robolink.cli.shared.output import complain
 from robolink.cli.shared.process import OTHER_NAMES, not_lost
 from robolink.documents.foreign import in_a_line
-from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.exceptions import ExternalShutdownException, NotInitializedException, RobolinkError
 from robolink.system import exit_code
 
 if TYPE_CHECKING:
@@ -106,6 +106,8 @@ def _outcome(args: list[str]) -> int:
     except (KeyboardInterrupt, ExternalShutdownException):  # the second is what SIGTERM ends a spin with
         return 130
     except RobolinkError as error:
+        if isinstance(error, NotInitializedException) and error.by_signal:  # it came before the spin that it would end
+            return 130
         return complain(error)
     except BrokenPipeError:
         _drop_output()

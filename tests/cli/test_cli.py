@@ -14,10 +14,14 @@ from pathlib import Path
 
 import pytest
 
+import robolink.cli.main
+from robolink import Context
 from robolink.cli.main import main
 from robolink.cli.shared.commands import NOUNS
+from robolink.executors import SingleThreadedExecutor
 from robolink.extensions.optional import is_here
 from robolink.supervisor import Supervisor
+from robolink.transport.memory import MemoryTransport
 from robolink.workspace import VARIABLE
 from tests.support.started import PATIENCE, TALKER, Write, outcome, posix_only, started, wait_for
 
@@ -95,6 +99,21 @@ def test_wrong_usage_is_one_line_and_2(args: list[str], report: str, capsys: pyt
 def test_a_noun_without_a_verb_is_helped(args: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(args) == 2
     assert "Commands:" in capsys.readouterr().err
+
+
+def test_a_signal_before_the_spin_is_a_usual_end(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def make_an_executor_too_late(_: list[str]) -> int:
+        with Context(transport=MemoryTransport("early signal")) as context:
+            context.init([])
+            context.interrupt()
+            SingleThreadedExecutor(context=context)
+        return 0
+
+    monkeypatch.setattr(robolink.cli.main, "_run", make_an_executor_too_late)
+    assert main(["run", "talker"]) == 130
+    assert capsys.readouterr().err == ""
 
 
 def test_a_network_is_asked_for_before_the_command(

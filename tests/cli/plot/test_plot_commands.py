@@ -233,8 +233,8 @@ def test_a_byte_is_a_value_and_messages_that_lack_the_element_are_left_out(
 @pytest.mark.parametrize("backend", ["tkagg", "module://of_a_notebook"])
 def test_a_file_needs_no_screen_whatever_the_shell_says(tmp_path: Path, backend: str) -> None:
     program = """
-import sys; from pathlib import Path; from robolink.cli.plot.messages import Wish, check
-check(Wish(Path(sys.argv[1])))
+import sys; from pathlib import Path; from robolink.cli.plot.messages import Request, check
+check(Request(Path(sys.argv[1])))
 import matplotlib.pyplot as plt; plt.subplots()
 """
     environment = {**os.environ, "MPLBACKEND": backend, "DISPLAY": "", "WAYLAND_DISPLAY": ""}
