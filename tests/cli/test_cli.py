@@ -106,7 +106,6 @@ def test_a_signal_before_the_spin_is_a_usual_end(
 ) -> None:
     def make_an_executor_too_late(_: list[str]) -> int:
         with Context(transport=MemoryTransport("early signal")) as context:
-            context.init([])
             context.interrupt()
             SingleThreadedExecutor(context=context)
         return 0
