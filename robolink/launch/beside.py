@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.exceptions import SecurityError
-from robolink.extensions.optional import PAGE, check
+from robolink.extensions import optional
 from robolink.launch.entry import Entry
 from robolink.launch.planning import Launched
 from robolink.launch.readiness import Awaited
@@ -63,7 +63,7 @@ def view(taken: set[str], enclave: str) -> Process:
     Raises:
         MissingPartError: (an ImportError) If this installation lacks it.
     """
-    check(PAGE, "--view ('robolink view')")
+    optional.check(optional.PAGE, "--view ('robolink view')")
     names = itertools.chain(["view"], (f"view-{number}" for number in itertools.count(2)))
     name = next(each for each in names if each not in taken)
     keys = ["--enclave", enclave] if enclave else []
