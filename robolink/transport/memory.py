@@ -5,9 +5,7 @@ Samples are delivered inside `put`, requests inside `call`, and replies inside `
 
 from __future__ import annotations
 
-import functools
 import itertools
-import re
 import threading
 import weakref
 from collections import Counter, deque
@@ -22,6 +20,7 @@ from robolink.system import heap
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Handle, NumberingOutlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 from robolink.transport.history import Latch, latched_depth
+from robolink.transport.patterns import matcher
 from robolink.wire import check_attachment, pair_opener
 
 
@@ -115,7 +114,7 @@ class MemoryTransport(Transport):
     def tokens(self, pattern: str) -> list[str]:
         """Return the tokens that match `pattern`, sorted."""
         with self._declaring():
-            return sorted(filter(_matcher(pattern), self.bus.tokens))
+            return sorted(filter(matcher(pattern), self.bus.tokens))
 
     def read(self, arrived: Any) -> Sample:
         """Return the item as a Sample: what was published comes as a plain pair, a reply is one already."""
@@ -343,7 +342,7 @@ class _Watch(_Declared):
 
     def __init__(self, session: MemoryTransport, pattern: str, on_change: Callable[[str, bool], object]) -> None:
         super().__init__(session)
-        self.matches, self.on_change = _matcher(pattern), on_change
+        self.matches, self.on_change = matcher(pattern), on_change
         self.changes = deque((token, True) for token in sorted(filter(self.matches, self.bus.tokens)))
         self._telling = threading.Lock()
         self.bus.watches = (*self.bus.watches, self)
@@ -385,11 +384,3 @@ def _drop(table: dict[str, tuple[Any, ...]], key: str, one: object) -> None:
         table[key] = rest
     else:
         del table[key]
-
-
-@functools.lru_cache(maxsize=64)
-def _matcher(pattern: str) -> Callable[[str], bool]:
-    """Return a matcher of Zenoh key expressions: `*` is one chunk, `**` any number, but none that begins with @."""
-    wild = {"*": r"/(?!@)[^/]+", "**": r"(?:/(?!@)[^/]+)*"}
-    regex = re.compile("".join(wild.get(chunk, "/" + re.escape(chunk)) for chunk in pattern.split("/")))
-    return lambda token: regex.fullmatch("/" + token) is not None

@@ -25,6 +25,7 @@ from robolink.system.waits import get_within
 from robolink.transport import addresses, lifetime
 from robolink.transport.addresses import Place, Probes, waiting
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
+from robolink.transport.gates import make_gate
 from robolink.transport.reach import Link, host_of, port_of
 from robolink.transport.roaming_handles import (
     Declaration,
@@ -34,7 +35,7 @@ from robolink.transport.roaming_handles import (
     RoamingWatch,
 )
 from robolink.transport.zenoh import ZenohTransport
-from robolink.transport.zenoh_declare import ask, make_gate
+from robolink.transport.zenoh_declare import ask
 from robolink.transport.zenoh_recovery import Recovery
 
 LINKS_WITHIN = 1.0

@@ -11,9 +11,9 @@ from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.system.waits import fork_lock
 from robolink.transport import lifetime
 from robolink.transport.base import Handle, Sink
+from robolink.transport.gates import aim_gate, close_gate, make_gate
 from robolink.transport.history import Latch, latched_depth
 from robolink.transport.zenoh import ZenohTransport
-from robolink.transport.zenoh_declare import aim_gate, close_gate, make_gate
 from robolink.transport.zenoh_handles import Changes, ZenohOutlet
 from robolink.transport.zenoh_mending import Mending, Sieve
 

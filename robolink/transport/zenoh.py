@@ -24,6 +24,7 @@ from robolink.transport import lifetime, zenoh_handles
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Query, Sample, Sink, Transport, make_sample, refuse_giant
+from robolink.transport.gates import close_gate, make_gate
 from robolink.transport.joining import join, leave
 from robolink.transport.reach import Link, links_of
 from robolink.transport.shared_memory import PoolLimit
@@ -87,20 +88,20 @@ class ZenohTransport(Transport):
 
     def subscribe(self, key: str, qos: QoSProfile, sink: Sink) -> Handle:
         """Call `sink` for every sample published on `key`; with TRANSIENT_LOCAL what was retained comes first."""
-        gate = declare.make_gate(sink)
+        gate = make_gate(sink)
         made = self._make(key, declare.declare_subscriber, key, gate, resolved(qos))
         latched = qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
         return handles.ZenohSubscription(self._holdings, made, gate, self._holdings.topic(key), latched=latched)
 
     def serve(self, key: str, sink: Sink) -> Handle:
         """Call `sink` for every call on `key`; `accept` turns what it gets into a Query."""
-        gate = declare.make_gate(sink)
+        gate = make_gate(sink)
         return handles.Declared(self._holdings, [self._make(key, declare.declare_server, key, gate)], gate)
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Handle:
         """Send a request to all servers of `key`. `sink` gets each reply, then None once as the end."""
         refuse_giant(key, payload)
-        gate, end = declare.make_gate(sink), declare.make_gate(sink, None)
+        gate, end = make_gate(sink), make_gate(sink, None)
         self._ends.add(end)
         call = zenoh_handles.ZenohCall(self._make(key, declare.call, key, payload, attachment, gate, end), gate, end)
         self._calls.add(call)
@@ -204,7 +205,7 @@ class ZenohTransport(Transport):
             return
         if lifetime.is_ending():  # whoever waits ends as well, and shall not complain that nobody answers
             for end in lifetime.all_of(self._ends):
-                declare.close_gate(end)
+                close_gate(end)
         why = f"session {self.session_id} has been closed"
         with self._holdings.lock:
             declared = self._holdings.end(why)

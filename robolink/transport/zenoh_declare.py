@@ -14,6 +14,7 @@ import zenoh
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport import lifetime
 from robolink.transport.base import Sink
+from robolink.transport.gates import make_gate
 from robolink.transport.history import latched_depth
 from robolink.transport.reach import mode_of
 
@@ -159,22 +160,6 @@ def ask(session: zenoh.Session, pattern: str, answered: Callable[[], object], ti
 def direct(callback: Callable[[Any], object], drop: Callable[[], object] | None = None) -> Any:
     """Return a handler for Zenoh's own thread, where anything but C costs five times as much as the message."""
     return zenoh.handlers.Callback(callback, drop, indirect=False)
-
-
-def make_gate(sink: Any, *arguments: object) -> functools.partial[object]:
-    """Wrap `sink` in a gate: a C callable that can be closed atomically."""
-    # Not partial(sink): a partial of a partial is merged, and this one must not copy what the other one holds.
-    return functools.partial(sink.__call__, *arguments)
-
-
-def aim_gate(gate: Any, sink: Any) -> None:
-    """Lead a gate without arguments to another sink, atomically."""
-    gate.__setstate__((sink.__call__, (), {}, None))
-
-
-def close_gate(gate: Any) -> None:
-    """Close a gate, since Zenoh does not wait for its callbacks when something is undeclared."""
-    gate.__setstate__((bool, (), {}, None))  # bool takes anything or nothing, and does nothing
 
 
 def quietly(action: Callable[[], object]) -> None:

@@ -19,8 +19,9 @@ from robolink.system.terminal import shown
 from robolink.system.waits import get_within
 from robolink.transport import lifetime
 from robolink.transport.base import Sample, Sink, refuse_giant
+from robolink.transport.gates import close_gate
 from robolink.transport.network import reason
-from robolink.transport.zenoh_declare import Publishers, close_gate, is_matching, quietly
+from robolink.transport.zenoh_declare import Publishers, is_matching, quietly
 
 LARGE = 32 * 1024
 """Payload size in bytes from which it is cheaper to check for subscriptions first than to copy it for nobody."""

@@ -25,6 +25,7 @@ from robolink.system import clocks
 from robolink.transport import lifetime
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Handle, Sink
+from robolink.transport.gates import close_gate, make_gate
 from robolink.transport.history import stored_depth
 from robolink.transport.roaming_handles import Declaration, Holdings, Retained, RoamingOutlet
 from robolink.transport.zenoh import ZenohTransport
@@ -211,8 +212,8 @@ class Recovery:
 
     def _declare_watch(self, plain: ZenohTransport) -> Handle:
         generation, pattern = _Generation(plain.session), f"{self._prefix}/*/*"
-        changed = declare.make_gate(functools.partial(self._on_token, generation))
-        called = declare.make_gate(functools.partial(self._on_call, plain.session))
+        changed = make_gate(functools.partial(self._on_token, generation))
+        called = make_gate(functools.partial(self._on_call, plain.session))
 
         def watch(session: Any) -> list[Any]:
             remote = zenoh.Locality.REMOTE
@@ -295,7 +296,7 @@ class Recovery:
                 positions.append(Position(topic, int(age * 1e9), each.positions()))
                 by_topic.setdefault(topic, []).append(each)
         question = msgspec.msgpack.encode(together(positions))
-        gate, end = declare.make_gate(functools.partial(_take, by_topic)), declare.make_gate(_end, mendings)
+        gate, end = make_gate(functools.partial(_take, by_topic)), make_gate(_end, mendings)
         self._gates.update((gate, end))
         with lifetime.inside:
             session.get(
@@ -311,7 +312,7 @@ class Recovery:
     def close(self) -> None:
         """Take no more answers."""
         for each in lifetime.all_of(self._gates):
-            declare.close_gate(each)
+            close_gate(each)
 
 
 def _take(mendings: dict[str, list[Mending]], reply: Any) -> None:
