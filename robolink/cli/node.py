@@ -55,21 +55,26 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object.")] = False,
 ) -> None:
     """Show the publishers, subscriptions, services and actions of a node."""
-    from robolink.cli.shared.graph import absolute, sections_of, tokens
+    from robolink.cli.shared.graph import absolute, bridge_data, bridges, sections_of, through, tokens
     from robolink.cli.shared.output import say, say_json, tell
     from robolink.cli.shared.session import looking
 
     name = absolute(node)
     with looking() as context:
-        count, found = of_node(tokens(context), name, context.get_domain_id())
+        announced = tokens(context)
+        count, found = of_node(announced, name, context.get_domain_id())
+        known = bridges(context)
+    behind = [known.get(each.session) for each in announced if each.full_node_name == name]
     if count > 1:
         tell(f"{count} nodes are named {name}: this is what they do together")
     sections = sections_of(found, hidden)
     if as_json:
         lists = {title.lower().replace(" ", "_"): dict(listed) for title, listed in sections}
-        say_json({"name": name, "count": count, **lists})
+        say_json({"name": name, "count": count, **lists, **bridge_data(next(filter(None, behind), None))})
         return
     say(name)
+    for text in sorted({through(each) for each in behind if each is not None}):
+        say(f"  Network: {text}")
     for title, listed in sections:  # one that is empty has an empty line, as in ros2
         say(f"  {title}:")
         say("\n".join(f"    {each}: {', '.join(types)}" for each, types in listed))

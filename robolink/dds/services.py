@@ -7,7 +7,7 @@ from typing import Any
 from robolink.dds.sides import Announced, Side
 from robolink.exceptions import TransportError
 from robolink.transport.base import Handle, Query
-from robolink.wire import NO_HASH, EndpointKind, EndpointToken, gid_in, is_attachment
+from robolink.wire import NO_HASH, EndpointKind, EndpointToken, answer_to, gid_in, is_attachment, numbers_in
 
 MOST_CALLS = 1000
 """Most calls of one service that are under way; beyond it the oldest ends unanswered."""
@@ -33,10 +33,8 @@ class PassedCall:
             sample = self._flow.source.transport.read(content)
         except TransportError:  # an error in place of an answer: another server may do better, and the end comes
             return
-        asked, answered = self._query.attachment, sample.attachment
         # Callers find their call by its number, and by who asked: both are as the caller sent them.
-        when = answered[8:16] if is_attachment(answered) else asked[8:16]
-        self._query.reply(sample.payload, asked[:8] + when + asked[16:])
+        self._query.reply(sample.payload, answer_to(self._query.attachment, sample.attachment))
 
     def end(self) -> None:
         """End it on both sides, answered or not. Safe to call twice."""
@@ -69,7 +67,7 @@ class _Serving:
         flow.make_room()
         call = PassedCall(flow, query, caller, self._source_key)
         flow.calls[call] = None
-        attachment = asked[:16] + flow.sender_of(caller)
+        attachment = numbers_in(asked) + flow.sender_of(caller)
         sink = flow.source.lane.sink(call)
         try:
             call.handle = flow.source.transport.call(self._source_key, query.payload, attachment, sink)

@@ -19,9 +19,8 @@ from robolink.wire import (
     format_token,
     gid_of,
     own_tokens,
+    sender_part,
 )
-
-_GID_LENGTH = bytes((GID_BYTES,))
 
 
 class Announced(NamedTuple):
@@ -34,7 +33,7 @@ class Announced(NamedTuple):
     @property
     def sender(self) -> bytes:
         """End of the attachments that are sent in its name: the gid's length, and the gid."""
-        return _GID_LENGTH + self.gid
+        return sender_part(self.gid)
 
 
 class Side:
@@ -55,7 +54,7 @@ class Side:
         """Gids of what the mirror announces here: what bears one of them is its own echo."""
         self.nobody = secrets.token_bytes(GID_BYTES)
         """Gid in the name of which callers without a token call here."""
-        self.sender_of_nobody = _GID_LENGTH + self.nobody
+        self.sender_of_nobody = sender_part(self.nobody)
         self.own.add(self.nobody)
         self._ids = itertools.count(1)
         self._node_ids: dict[tuple[str, str], tuple[str, int]] = {}

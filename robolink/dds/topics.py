@@ -15,7 +15,7 @@ from robolink.dds.lanes import Lane
 from robolink.dds.sides import Announced, Later, Side
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from robolink.transport.base import Handle, Outlet
-from robolink.wire import NO_HASH, EndpointKind, EndpointToken, is_attachment
+from robolink.wire import NO_HASH, EndpointKind, EndpointToken, gid_in, is_attachment, numbers_in
 
 MATCHED_WITHIN = 1.0
 """Longest wait for a subscription that the graph shows to match a new outlet, in seconds; DDS takes some 20 ms."""
@@ -102,20 +102,20 @@ class Inlet:
     def deliver(self, content: Any) -> None:
         """Carry a sample over. This runs once a message: nothing of it is parsed but the sender's gid."""
         payload, attachment = self._read(content)
-        forward = self._forwards.get(attachment[17:])  # `gid_in`, written out
+        forward = self._forwards.get(gid_in(attachment))
         if forward is None:
             self._park(payload, attachment)
             return
         forward.count += 1
         # The number and time are the sender's; the gid is that of its announcement on the other side.
-        forward.put(payload, attachment[:16] + forward.sender)
+        forward.put(payload, numbers_in(attachment) + forward.sender)
 
     def _park(self, payload: bytes, attachment: bytes) -> None:
         """Keep a sample whose sender is not known yet: data may be faster than the token, above all from a new one.
 
         An echo of the mirror's own is dropped, and so is what another inlet brings, or nobody wants.
         """
-        gid = attachment[17:]
+        gid = gid_in(attachment)
         if gid in self._flow.source.own or not is_attachment(attachment):
             return
         publication = self._flow.publications.get(gid)
@@ -148,7 +148,7 @@ class Inlet:
         for payload, attachment in waiting:
             self._bytes_parked -= len(payload)
             forward.count += 1
-            forward.put(payload, attachment[:16] + forward.sender)
+            forward.put(payload, numbers_in(attachment) + forward.sender)
 
     def dismiss(self, gid: bytes) -> None:
         """Forget a publisher."""

@@ -24,6 +24,8 @@ _LENGTH = _LAYOUT.size
 GID_BYTES = 16
 _GID_LENGTH_AT = 16
 """Offset of the byte that holds the gid's length."""
+_TIME_AT = 8
+"""Offset of the time."""
 
 
 class Attachment(NamedTuple):
@@ -87,6 +89,20 @@ def pair_opener(decode: Callable[[bytes], Any]) -> Callable[[tuple[bytes, bytes]
 
 gid_in: Callable[[bytes], bytes] = operator.itemgetter(slice(_GID_LENGTH_AT + 1, _LENGTH))
 """Return the sender's gid in an attachment; of other bytes something that is not a sender's. In C, for hot paths."""
+
+numbers_in: Callable[[bytes], bytes] = operator.itemgetter(slice(_GID_LENGTH_AT))
+"""Return the beginning of an attachment, its number and time: with `sender_part` of another gid it is that one's."""
+
+
+def sender_part(gid: bytes) -> bytes:
+    """Return the end of the attachments of a sender: its gid, and the length of that."""
+    return bytes((GID_BYTES,)) + gid
+
+
+def answer_to(asked: bytes, answered: bytes) -> bytes:
+    """Return the attachment of an answer that is passed on: number and caller of `asked`, time of `answered`."""
+    when = answered if is_attachment(answered) else asked
+    return asked[:_TIME_AT] + when[_TIME_AT:_GID_LENGTH_AT] + asked[_GID_LENGTH_AT:]
 
 
 def unpack_attachment(raw: bytes) -> Attachment:

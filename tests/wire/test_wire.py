@@ -351,3 +351,10 @@ def test_a_megabyte_is_not_announced() -> None:
 def test_malformed_tokens(text: str) -> None:
     with pytest.raises(WireError):
         wire.parse_token(text)
+
+
+def test_an_attachment_gets_another_sender_or_another_time() -> None:
+    asked, answered = wire.pack_attachment(5, 100, b"a" * 16), wire.pack_attachment(1, 200, b"b" * 16)
+    assert wire.numbers_in(asked) + wire.sender_part(b"c" * 16) == wire.pack_attachment(5, 100, b"c" * 16)
+    assert wire.answer_to(asked, answered) == wire.pack_attachment(5, 200, b"a" * 16)
+    assert wire.answer_to(asked, b"nonsense") == asked

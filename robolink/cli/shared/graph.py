@@ -15,7 +15,17 @@ from robolink.interfaces import is_named
 from robolink.networks.request import FIRST_PORT, requested
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.system.terminal import shown
-from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken, graph_pattern, parse_token
+from robolink.wire import (
+    NO_HASH,
+    BridgeToken,
+    EndpointKind,
+    EndpointToken,
+    NodeToken,
+    bridge_pattern,
+    graph_pattern,
+    parse_bridge,
+    parse_token,
+)
 
 
 def announced(context: Context) -> dict[str, Token]:
@@ -37,6 +47,35 @@ def announced(context: Context) -> dict[str, Token]:
 def tokens(context: Context) -> list[Token]:
     """Return the tokens announced on the context's domain."""
     return list(announced(context).values())
+
+
+def bridges(context: Context) -> dict[str, BridgeToken]:
+    """Return the bridges to other networks, by their sessions: what is announced by one of these came through it."""
+    found = {}
+    for text in context.transport.tokens(bridge_pattern(context.get_domain_id())):
+        with contextlib.suppress(WireError):
+            bridge = parse_bridge(text)
+            found[bridge.session] = bridge
+    return found
+
+
+def through(bridge: BridgeToken) -> str:
+    """Return in words where what came through a bridge is.
+
+    >>> through(BridgeToken(0, "ab", "dds", "robot"))
+    'DDS, through the bridge on robot'
+    """
+    name = NETWORKS.get(bridge.network, bridge.network)
+    return f"{name}, through the bridge on {shown(bridge.host)}"
+
+
+def bridge_data(bridge: BridgeToken | None) -> dict[str, dict[str, str]]:
+    """Return the same as data for JSON; nothing for what did not come through a bridge."""
+    return {} if bridge is None else {"bridge": {"network": bridge.network, "host": bridge.host}}
+
+
+NETWORKS = {"dds": "DDS", "zenoh": "Zenoh"}
+"""Names of the networks that bridges join, as people write them."""
 
 
 def nodes(context: Context) -> list[NodeToken]:

@@ -5,9 +5,20 @@ from __future__ import annotations
 import contextlib
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.shared.graph import absolute, announced, endpoints, is_hidden, show_names, show_of_type, show_types
+from robolink.cli.shared.graph import (
+    absolute,
+    announced,
+    bridge_data,
+    bridges,
+    endpoints,
+    is_hidden,
+    show_names,
+    show_of_type,
+    show_types,
+    through,
+)
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import ReportedLosses, looking
 from robolink.duration import Infinite
@@ -18,7 +29,7 @@ from robolink.qos import QoSProfile
 from robolink.system.terminal import shown
 from robolink.topic_endpoint_info import qos_lines
 from robolink.validate_full_topic_name import validate_full_topic_name
-from robolink.wire import EndpointKind, EndpointToken, gid_of
+from robolink.wire import BridgeToken, EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -53,13 +64,13 @@ def show_info(topic: str, *, verbose: bool, json: bool) -> None:
     """Show the type of a topic and its endpoints."""
     with looking() as context:
         name, found = _of_topic(context, topic)
-        lost = _losses(context) if verbose or json else {}
+        more = _More(_losses(context), bridges(context)) if verbose or json else _More()
     types = sorted({each.type_name for _, each in found})
     ends = {kind: [each for each in found if each[1].kind is kind] for kind in _KINDS}
     if json:
         counts = {f"{_KINDS[kind].lower()}_count": len(each) for kind, each in ends.items()}
         lists = {
-            f"{_KINDS[kind].lower()}s": [_endpoint_data(*one, lost) for one in each] for kind, each in ends.items()
+            f"{_KINDS[kind].lower()}s": [_endpoint_data(*one, more) for one in each] for kind, each in ends.items()
         }
         say_json({"name": name, "types": types, **counts, **lists})
         return
@@ -68,7 +79,7 @@ def show_info(topic: str, *, verbose: bool, json: bool) -> None:
     for kind, each in ends.items():
         say(f"{_KINDS[kind].capitalize()} count: {len(each)}{gap}")
         for one in each if verbose else []:
-            say(f"{_endpoint_text(*one, lost)}\n")
+            say(f"{_endpoint_text(*one, more)}\n")
 
 
 def show_type(topic: str, *, json: bool) -> None:
@@ -151,8 +162,17 @@ def _losses(context: Context) -> dict[bytes, Losses]:
         return reported.look(LOSSES_WITHIN)
 
 
-def _endpoint_text(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses]) -> str:
-    """Return one endpoint as text, like `ros2 topic info -v`, with what it has lost."""
+class _More(NamedTuple):
+    """What robolink tells of endpoints in addition to ros2."""
+
+    lost: Mapping[bytes, Losses] = {}
+    """Losses of subscriptions, by their gids."""
+    bridges: Mapping[str, BridgeToken] = {}
+    """Bridges, by their sessions."""
+
+
+def _endpoint_text(gid: bytes, end: EndpointToken, more: _More) -> str:
+    """Return one endpoint as text, like `ros2 topic info -v`, with what it has lost and which bridge it is behind."""
     return "\n".join(
         [
             f"Node name: {end.node_name}",
@@ -162,7 +182,8 @@ def _endpoint_text(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses])
             f"Endpoint type: {_KINDS[end.kind].upper()}",
             f"GID: {gid.hex('.')}",
             *qos_lines(end.qos),
-            *_loss_lines(lost.get(gid)),
+            *_loss_lines(more.lost.get(gid)),
+            *_bridge_lines(more.bridges.get(end.session)),
         ]
     )
 
@@ -173,7 +194,11 @@ def _loss_lines(losses: Losses | None) -> list[str]:
     return [f"Messages lost: {losses.lost} on the way, {losses.dropped} dropped for newer ones"]
 
 
-def _endpoint_data(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses]) -> dict[str, Any]:
+def _bridge_lines(bridge: BridgeToken | None) -> list[str]:
+    return [] if bridge is None else [f"Network: {through(bridge)}"]
+
+
+def _endpoint_data(gid: bytes, end: EndpointToken, more: _More) -> dict[str, Any]:
     return {
         "node_name": end.node_name,
         "node_namespace": end.namespace,
@@ -182,7 +207,8 @@ def _endpoint_data(gid: bytes, end: EndpointToken, lost: Mapping[bytes, Losses])
         "endpoint_type": _KINDS[end.kind].upper(),
         "gid": gid.hex("."),
         "qos_profile": _qos_data(end.qos),
-        **({"messages_lost": lost[gid]._asdict()} if gid in lost else {}),
+        **({"messages_lost": more.lost[gid]._asdict()} if gid in more.lost else {}),
+        **bridge_data(more.bridges.get(end.session)),
     }
 
 

@@ -19,7 +19,7 @@ from robolink.interfaces.std_srvs.srv import SetBool, Trigger
 from robolink.qos import QoSProfile
 from robolink.transport import Handle
 from robolink.transport.memory import MemoryTransport
-from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken, format_token
+from robolink.wire import NO_HASH, BridgeToken, EndpointKind, EndpointToken, NodeToken, format_bridge, format_token
 from tests.support.seen_by_commands import a_node_that_commands_see
 
 Captured = pytest.CaptureFixture[str]
@@ -242,6 +242,18 @@ def test_whatever_is_announced_can_be_sorted_into_sections(ends: list[EndpointTo
     sections = sections_of(ends, hidden)
     assert [title for title, _ in sections][:2] == ["Subscribers", "Publishers"]
     assert all(types or "Action" in title for title, listed in sections for _, types in listed)
+
+
+def test_info_says_that_a_node_is_behind_a_bridge(node: Node, announce: Announce, capsys: Captured) -> None:
+    announce("/", "base", (EndpointKind.PUBLISHER, "/odom", "nav_msgs/msg/Odometry"))
+    node.context.transport.announce(format_bridge(BridgeToken(7, "abc", "dds", "turtle")))
+    assert main(["node", "info", "/base"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:3] == ["/base", "  Network: DDS, through the bridge on turtle", "  Subscribers:"]
+    assert main(["node", "info", "/base", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["bridge"] == {"network": "dds", "host": "turtle"}
+    assert main(["node", "info", "/lab/robot"]) == 0
+    assert "Network" not in capsys.readouterr().out
 
 
 def test_a_process_that_goes_on_keeps_no_session_of_a_look(node: Node) -> None:

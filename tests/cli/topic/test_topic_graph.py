@@ -17,7 +17,7 @@ from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message import type_hash
 from robolink.qos import HistoryPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
-from robolink.wire import EndpointKind, format_token, gid_of
+from robolink.wire import BridgeToken, EndpointKind, format_bridge, format_token, gid_of
 from tests.support.seen_by_commands import LATCHED, a_node_that_commands_see, made, spinning
 from tests.support.waits import wait_until
 
@@ -119,6 +119,25 @@ def test_info_shows_every_policy(node: Node, capsys: Captured) -> None:
     assert publisher["qos_profile"]["deadline"] == 1.5
     assert publisher["qos_profile"]["lifespan"] is None
     assert publisher["qos_profile"]["history"] == "KEEP_ALL"
+
+
+def test_info_says_which_end_is_behind_a_bridge(node: Node, capsys: Captured) -> None:
+    transport = node.context.transport
+    own = node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/cmd_vel")[0]
+    transport.announce(format_token(own._replace(session="b1", node_name="base")))
+    transport.announce(format_bridge(BridgeToken(7, "b1", "dds", "turtle.local")))
+    transport.announce("@robolink/bridge/7/nonsense")
+    assert main(["topic", "info", "/cmd_vel", "-v"]) == 0
+    ends = capsys.readouterr().out.split("Node name: ")[1:]
+    line = "Network: DDS, through the bridge on turtle.local"
+    assert [(each.splitlines()[0], line in each.splitlines()) for each in ends] == [
+        ("base", True),
+        ("robot", False),
+        ("robot", False),
+    ]
+    assert main(["topic", "info", "/cmd_vel", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["publishers"]
+    assert [each.get("bridge") for each in found] == [{"network": "dds", "host": "turtle.local"}, None]
 
 
 def test_the_gid_is_that_of_the_announcement_as_it_was_written(node: Node, capsys: Captured) -> None:

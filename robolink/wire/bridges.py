@@ -1,0 +1,58 @@
+"""Tokens of bridges: by them two bridges between the same networks find each other, and tools what came through one."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from robolink.exceptions import WireError
+from robolink.wire.keys import format_number, matched, not_too_long, parse_number, quoted
+
+_BRIDGE = "@robolink/bridge"
+_FIELDS = 8
+_SESSION = re.compile(r"[0-9a-f]{1,32}")
+_WORD = re.compile(r"[A-Za-z0-9_.-]{1,253}")
+_OTHER = re.compile(r"[^A-Za-z0-9_.-]+")
+
+STARTING, RUNNING = "starting", "running"
+"""States of a bridge: whether it still looks for another one, or mirrors."""
+
+
+class BridgeToken(NamedTuple):
+    """Announcement of a bridge on one of its networks, beside the tokens of what it mirrors there."""
+
+    domain: int
+    session: str
+    """Session on this network: the tokens of what comes through the bridge have it, too."""
+    network: str
+    """Network on the other side, such as `dds`."""
+    host: str
+    """Name of the machine that it runs on."""
+    state: str = RUNNING
+    mark: str = ""
+    """Id of the bridge, the same on all its networks; "" is the session."""
+
+
+def bridge_pattern(domain: int) -> str:
+    """Return the key expression that the tokens of all bridges of a domain match."""
+    return f"{_BRIDGE}/{format_number(domain)}/**"
+
+
+def format_bridge(token: BridgeToken) -> str:
+    """Return the text of a bridge's token; what a host's name may not have in a key becomes a dash."""
+    host = _OTHER.sub("-", token.host)[:253] or "-"
+    fields = [token.session, token.mark or token.session, token.network, token.state, host]
+    matched(_SESSION, token.session, "a session id")
+    for each in fields[1:]:
+        matched(_WORD, each, "a word")
+    return "/".join([_BRIDGE, format_number(token.domain), *fields])
+
+
+def parse_bridge(text: str) -> BridgeToken:
+    """Parse the text of `format_bridge`; raises WireError for any other."""
+    fields = not_too_long(text, "a token").split("/")
+    if len(fields) != _FIELDS or not text.startswith(f"{_BRIDGE}/"):
+        raise WireError(f"expected a bridge's token, got {quoted(text)}")
+    domain, session, *words = fields[2:]
+    mark, network, state, host = (matched(_WORD, each, "a word") for each in words)
+    return BridgeToken(parse_number(domain), matched(_SESSION, session, "a session id"), network, host, state, mark)
