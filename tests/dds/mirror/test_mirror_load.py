@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from robolink.dds import lanes, mirror
-from robolink.dds.mirror import LINGER, Mirror
+from robolink.dds.mirror import lanes, mirror
+from robolink.dds.mirror.mirror import LINGER, Mirror
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.wire import (
     DataKey,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from robolink.dds.mirror import LINGER
-from robolink.dds.topics import KNOWN_WITHIN
+from robolink.dds.mirror.mirror import LINGER
+from robolink.dds.mirror.topics import KNOWN_WITHIN
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.qos import DurabilityPolicy, QoSProfile
 from tests.support.mirrored import Half, Mirrored, heard, send

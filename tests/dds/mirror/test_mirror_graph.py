@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from robolink import Node
-from robolink.dds.mirror import LINGER
-from robolink.dds.topics import KNOWN_WITHIN
+from robolink.dds.mirror.mirror import LINGER
+from robolink.dds.mirror.topics import KNOWN_WITHIN
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message import type_hash

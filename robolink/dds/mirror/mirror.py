@@ -16,9 +16,9 @@ from collections import Counter
 from collections.abc import Callable
 from typing import NamedTuple
 
-from robolink.dds.services import ServiceFlow
-from robolink.dds.sides import Announced, Later, Side
-from robolink.dds.topics import TopicFlow
+from robolink.dds.mirror.services import ServiceFlow
+from robolink.dds.mirror.sides import Announced, Later, Side
+from robolink.dds.mirror.topics import TopicFlow
 from robolink.exceptions import RobolinkError, TransportClosedError, WireError
 from robolink.logging import get_logger
 from robolink.system import clocks

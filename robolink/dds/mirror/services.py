@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from robolink.dds.sides import Announced, Side
+from robolink.dds.mirror.sides import Announced, Side
 from robolink.exceptions import TransportError
 from robolink.transport.base import Handle, Query
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, answer_to, gid_in, is_attachment, numbers_in

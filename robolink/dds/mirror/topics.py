@@ -11,8 +11,8 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
-from robolink.dds.lanes import Lane
-from robolink.dds.sides import Announced, Later, Side
+from robolink.dds.mirror.lanes import Lane
+from robolink.dds.mirror.sides import Announced, Later, Side
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from robolink.transport.base import Handle, Outlet
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, gid_in, is_attachment, numbers_in

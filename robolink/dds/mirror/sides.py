@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Callable
 from typing import NamedTuple
 
-from robolink.dds.lanes import Lane
+from robolink.dds.mirror.lanes import Lane
 from robolink.transport.base import Handle, Transport
 from robolink.wire import (
     GID_BYTES,

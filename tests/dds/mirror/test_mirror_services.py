@@ -8,7 +8,7 @@ import pytest
 
 from robolink import Node
 from robolink.action import ActionClient, ActionServer, CancelResponse
-from robolink.dds.mirror import LINGER
+from robolink.dds.mirror.mirror import LINGER
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.message import type_hash
