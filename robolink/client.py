@@ -107,6 +107,8 @@ class Client(ServiceEnd):
         self.malformed = 0
         """Number of answers that could not be read."""
         self._silent = False
+        self._keeps_: object = None
+        """The node, which lives while anybody refers to the client."""
         self._endpoint.announce()
         self._context.on_shutdown(self._release)
 
@@ -382,6 +384,7 @@ class Client(ServiceEnd):
         if self._destroyed:
             return
         self._destroyed = True
+        self._keeps_ = None
         for call in list(self._calls):
             self.remove_pending_request(call.future)
         if self.introspection is not None:

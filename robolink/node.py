@@ -171,6 +171,7 @@ class Node(Destroyable):
             self._context.given_parameters.expect(self, self._arguments_.parameter_overrides)
             events = self.create_publisher(ParameterEvent, "/parameter_events", qos_profile_parameter_events)
             self._parameter_store_.events = events
+            events._keeps_ = None  # or the node would be in a circle, and not go once nobody refers to it
             if automatically_declare_parameters_from_overrides:
                 self.declare_parameters("", [(name, each.type_) for name, each in self._parameter_overrides.items()])
             self._time_source = TimeSource(node=self)
@@ -620,6 +621,7 @@ class Node(Destroyable):
             callback_group=callback_group or self._default_callback_group,
         )
         publisher.topic = topic  # as written, as in rclpy; `topic_name` is the whole one
+        publisher._keeps_ = self
         self._entity_store_.add_publisher(publisher)
         return publisher
 
@@ -730,6 +732,7 @@ class Node(Destroyable):
         check_is_valid_srv_type(srv_type)
         made = Client(self._owner_, srv_type, name, qos_profile, group)
         made.srv_name = srv_name
+        made._keeps_ = self
         return self._entity_store_.add(made, self._entity_store_.clients)
 
     def create_timer(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
 
@@ -53,9 +54,11 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._put, self._attachment = self._outlets.put, self._endpoint.attachment
         self._put_numbered = self._outlets.put_numbered
         self._endpoint.warns = warns_of_types(callbacks)
-        self._endpoint.on_disagreement = self._on_disagreement
-        self._endpoint.on_other = self._on_other
-        self._endpoint.speak_humble = self._speak_humble
+        self._keeps_: object = None
+        """The node, which lives while anybody refers to the publisher; None for those that the node made for itself."""
+        self._endpoint.on_disagreement = _weakly(self._on_disagreement)
+        self._endpoint.on_other = _weakly(self._on_other)
+        self._endpoint.speak_humble = _weakly(self._speak_humble)
         self._endpoint.announce()
 
     def publish(self, msg: MsgT | bytes) -> None:
@@ -133,6 +136,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         """End the publisher, and undeclare it. Safe to call twice."""
         if not self._destroyed:
             self._destroyed = True
+            self._keeps_ = None
             for handler in self.event_handlers:
                 handler.destroy()
             self._outlets.close()
@@ -143,6 +147,17 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def __exit__(self, *_: Any) -> None:
         self.destroy()
+
+
+def _weakly(method: Callable[..., object]) -> Callable[..., object]:
+    """Return a function that calls a bound method while its object is there: the graph would keep it for ever."""
+    reference = weakref.WeakMethod(method)
+
+    def call(*arguments: object) -> object:
+        found = reference()
+        return None if found is None else found(*arguments)
+
+    return call
 
 
 class _Outlets:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import MutuallyExclusiveCallbackGroup
@@ -25,7 +26,7 @@ class TimeSource:
 
     def __init__(self, *, node: TimedNode | None = None) -> None:
         self._clocks: list[ROSClock] = []
-        self._node: TimedNode | None = None
+        self._node: weakref.ReferenceType[TimedNode] | None = None  # weak: what nobody else refers to goes at once
         self._clock_sub: Subscription[ClockMsg] | None = None
         self._active = False
         self._last: Time | None = None
@@ -58,7 +59,7 @@ class TimeSource:
             raise TypeError(f"node: expected a Node, got {type(node)}")
         if self._node is not None:
             self.detach_node()
-        self._node = node
+        self._node = weakref.ref(node)
         if not node.has_parameter(USE_SIM_TIME_NAME):
             node.declare_parameter(USE_SIM_TIME_NAME, False)
         value = node.get_parameter(USE_SIM_TIME_NAME)
@@ -70,12 +71,13 @@ class TimeSource:
     def detach_node(self) -> None:
         """Follow no node."""
         self.ros_time_is_active = False
-        if self._node is not None:
-            self._node.remove_on_set_parameters_callback(self._on_parameters)
+        node = self._get_node()
+        if node is not None:
+            node.remove_on_set_parameters_callback(self._on_parameters)
         self._node = None
 
     def _get_node(self) -> TimedNode | None:
-        return self._node
+        return None if self._node is None else self._node()
 
     def attach_clock(self, clock: ROSClock) -> None:
         """Set this `clock` from now on. Raises ValueError for what is not a ROSClock."""
@@ -91,24 +93,27 @@ class TimeSource:
         try:
             time = sent_time(msg.clock)
         except ValueError as error:  # rclpy raises here, and whoever publishes one such message ends every node
-            if self._node is not None:
-                self._node.get_logger().warning(f"a time on {CLOCK_TOPIC} is ignored: {error}", once=True)
+            node = self._get_node()
+            if node is not None:
+                node.get_logger().warning(f"a time on {CLOCK_TOPIC} is ignored: {error}", once=True)
             return
         self._last = time
         for clock in self._clocks:
             clock.set_ros_time_override(time)
 
     def _subscribe(self) -> None:
-        if self._clock_sub is None and self._node is not None:
+        node = self._get_node()
+        if self._clock_sub is None and node is not None:
             qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             # A group of its own: time goes on while a coroutine of the node waits for it.
-            self._clock_sub = self._node.create_subscription(
+            self._clock_sub = node.create_subscription(
                 ClockMsg, CLOCK_TOPIC, self.clock_callback, qos, callback_group=MutuallyExclusiveCallbackGroup()
             )
 
     def _unsubscribe(self) -> None:
-        if self._clock_sub is not None and self._node is not None:
-            self._node.destroy_subscription(self._clock_sub)
+        node = self._get_node()
+        if self._clock_sub is not None and node is not None:
+            node.destroy_subscription(self._clock_sub)
         self._clock_sub = None
 
     def _on_parameters(self, parameters: list[Parameter[Any]]) -> SetParametersResult:

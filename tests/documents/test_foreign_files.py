@@ -146,8 +146,8 @@ def test_a_parameter_that_no_node_declares_is_told(log_lines: list[Record], tmp_
     path = written(tmp_path, "p.yaml", "robot:\n  ros__parameters:\n    sped: 1.0\n")
     context = Context(transport="memory")
     context.init(["--ros-args", "--params-file", str(path)])
-    with context:
-        Node("robot", context=context).declare_parameter("speed", 0.5)
+    with context, Node("robot", context=context) as node:
+        node.declare_parameter("speed", 0.5)
     (line,) = log_lines
     assert line.message == "parameter 'sped' was given, but no node declared it (did you mean 'speed'?)"
 

@@ -95,8 +95,9 @@ def test_both_nodes_are_told_once(
 
 
 def test_two_definitions_of_one_type(make_node: Callable[..., Node], log_lines: list[Record]) -> None:
-    publish(make_node("left"), Thing)
-    subscribe(make_node("right"), NewerThing)
+    left, right = make_node("left"), make_node("right")  # held: what nobody refers to leaves the graph
+    publish(left, Thing)
+    subscribe(right, NewerThing)
     until(lambda: bool(warnings(log_lines, "left") and warnings(log_lines, "right")))
     (text,) = warnings(log_lines, "left")
     assert text.startswith("/topic: this node publishes it as lab_msgs/msg/Thing, and so /right subscribes to it, but")
@@ -110,8 +111,9 @@ def test_it_is_on_rosout_of_a_node_that_never_spins(bus: Bus, context: Context) 
     from robolink.qos import qos_profile_rosout_default
     from tests.support.spins import spin_until
 
-    publish(Node("left", context=context), Int32)
-    subscribe(Node("right", context=context), String)
+    left, right = Node("left", context=context), Node("right", context=context)
+    publish(left, Int32)
+    subscribe(right, String)
     got: list[tuple[str, int]] = []
     ear, executor = Node("ear", context=context), SingleThreadedExecutor(context=context)
     ear.create_subscription(

@@ -69,8 +69,8 @@ def test_who_comes_late_gets_the_lines_of_before(virtual: Context, executor: Sin
     from robolink.qos import qos_profile_rosout_default
 
     logging.set_console_handler(None)
-    Node("node", context=virtual).get_logger().info("early")
-    late, got = Node("late", context=virtual), list[Log]()
+    early, late, got = Node("early", context=virtual), Node("late", context=virtual), list[Log]()
+    early.get_logger().info("early")
     executor.add_node(late)
     late.create_subscription(Log, "/rosout", got.append, qos_profile_rosout_default)
     spin_for(executor, 0.1)

@@ -272,8 +272,7 @@ def test_a_host_is_asked_by_tls_alone_where_there_are_keys(store: Keystore) -> N
 def test_doctor_looks_with_keys_and_says_who_has_some(store: Keystore, monkeypatch: pytest.MonkeyPatch) -> None:
     context = Context()
     context.init(args=["--ros-args", "--enclave", "/robot"])
-    with context:
-        Node("arm", context=context)
+    with context, Node("arm", context=context):
         monkeypatch.setenv("ROS_SECURITY_ENCLAVE_OVERRIDE", "/student")
         assert look("zenoh://", store.domain).error == ""
         wait_until(lambda: any(isinstance(each, NodeToken) for each in look("zenoh://", store.domain).tokens))
