@@ -1,0 +1,297 @@
+"""Participant of a DDS domain, with sockets and a thread of its own."""
+
+from __future__ import annotations
+
+import logging
+import math
+import os
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from robolink.rtps import ids
+from robolink.rtps.announcements import ParticipantData
+from robolink.rtps.core import Accepts, Core, LocalReader, LocalWriter, OnMatch, Sink
+from robolink.rtps.discovery import LEASE, Resolve
+from robolink.rtps.parameters import Buffer, Locator
+from robolink.rtps.reach import Reach
+from robolink.rtps.sockets import Sockets
+from robolink.rtps.types import Endpoint, Peer, Qos
+
+_LOG = logging.getLogger(__name__)
+_NOTHING: tuple[Any, ...] = ()
+
+
+class Participant:
+    """A participant: makes writers and readers, and knows those of others.
+
+    All methods are thread-safe. Callbacks are called on the participant's thread, which holds no lock then: they may
+    call any method, but must not block, since nothing is received meanwhile.
+    """
+
+    def __init__(
+        self,
+        domain: int,
+        *,
+        name: str = "/",
+        user_data: bytes = b"",
+        reach: Reach = Reach(),  # noqa: B008 - a NamedTuple
+        on_peer: Callable[[Peer, bool], object] | None = None,
+        on_endpoint: Callable[[Endpoint, bool], object] | None = None,
+    ) -> None:
+        """Join a domain.
+
+        Args:
+            domain: from 0 to 232.
+            name: of the participant, as others show it.
+            user_data: what others get with its announcement.
+            reach: how far it reaches; if not said, it stays on this machine, over loopback.
+            on_peer: is called with other participants that came (True; again if what they say changed) or went.
+            on_endpoint: the same for their endpoints.
+
+        Raises:
+            ReachError: if no port is free, or there is no such interface or static peer. It is an OSError.
+            ValueError: if there is no such domain.
+        """
+        self.domain = domain
+        prefix = ids.VENDOR_ROBOLINK + os.urandom(10)
+        self.guid = prefix + ids.PARTICIPANT_ENTITY
+        self._sockets = Sockets(domain, reach)
+        self._outbox: list[tuple[Locator, list[Buffer], bool]] = []
+        append = self._outbox.append
+        me = ParticipantData(
+            prefix,
+            metatraffic=(self._sockets.metatraffic,),
+            default=(self._sockets.default,),
+            lease=LEASE,
+            name=name,
+            user_data=user_data,
+            domain=domain,
+        )
+        self._core = Core(
+            me,
+            Resolve(self._sockets.search, self._sockets.bounds.choose),
+            lambda address, buffers, is_paced: append((address, buffers, is_paced)),
+            on_peer=on_peer,
+            on_endpoint=on_endpoint,
+        )
+        self._lock = threading.Lock()
+        """Around the core and the outbox. Nothing is sent, and nobody called, under it: a paced sample sleeps between
+        its datagrams, and a callback may want a lock whose holder waits for this one."""
+        self._wakes_at = -math.inf
+        """When the thread wakes up by itself."""
+        self._is_open = True
+        self._thread = threading.Thread(target=self._run, name=f"rtps domain {domain}", daemon=True)
+        self._thread.start()
+
+    def writer(
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos = Qos(),  # noqa: B008 - a NamedTuple
+        *,
+        user_data: bytes = b"",
+        on_match: OnMatch | None = None,
+    ) -> Writer:
+        """Make a writer, and announce it.
+
+        Args:
+            topic: as DDS names it.
+            type_name: the same.
+            qos: what it offers.
+            user_data: what others get with its announcement.
+            on_match: is called with readers that it is matched with (True), or was.
+        """
+        with self._lock:
+            local = self._core.add_writer(time.monotonic(), topic, type_name, qos, user_data, on_match)
+            sent, is_wake = self._finish()
+        self._send(sent, is_wake)
+        return Writer(self, local)
+
+    def reader(
+        self,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        sink: Sink,
+        *,
+        user_data: bytes = b"",
+        accepts: Accepts | None = None,
+        on_match: OnMatch | None = None,
+    ) -> Reader:
+        """Make a reader, and announce it.
+
+        Args:
+            topic: as DDS names it.
+            type_name: the same.
+            qos: what it requests.
+            sink: is called with each sample, serialized, with its header of 4 bytes.
+            user_data: what others get with its announcement.
+            accepts: decides which writers it is matched with, of those that fit. It is called on any thread and must
+                not call the participant.
+            on_match: is called with writers that it is matched with (True), or was.
+        """
+        with self._lock:
+            local = self._core.add_reader(time.monotonic(), topic, type_name, qos, sink, user_data, accepts, on_match)
+            sent, is_wake = self._finish()
+        self._send(sent, is_wake)
+        return Reader(self, local)
+
+    def peers(self) -> list[Peer]:
+        """Return the other participants."""
+        with self._lock:
+            return self._core.peers()
+
+    def endpoints(self) -> list[Endpoint]:
+        """Return the other participants' endpoints."""
+        with self._lock:
+            return self._core.endpoints()
+
+    def settled(self) -> bool:
+        """Return whether all has been read that known participants announced to have."""
+        with self._lock:
+            return self._core.is_settled()
+
+    def close(self) -> None:
+        """Say goodbye, and leave the domain. Safe to call twice, and in callbacks."""
+        with self._lock:
+            if not self._is_open:
+                return
+            self._core.goodbye()
+            sent, _ = self._finish()
+            self._is_open = False
+        self._send(sent, True)
+        if threading.current_thread() is not self._thread:
+            self._thread.join(2)
+
+    # What others call under no lock
+
+    def _put(self, local: LocalWriter, payload: Buffer, related: tuple[bytes, int] | None, timestamp: int) -> int:
+        with self._lock:
+            if not self._is_open:
+                return 0
+            number = self._core.put(time.monotonic(), local, payload, related, timestamp or time.time_ns())
+            sent, is_wake = self._finish()
+        self._send(sent, is_wake)
+        return number
+
+    def _remove(self, local: LocalWriter | LocalReader) -> None:
+        with self._lock:
+            if not self._is_open:
+                return
+            self._core.remove(time.monotonic(), local)
+            sent, is_wake = self._finish()
+        self._send(sent, is_wake)
+
+    def _finish(self) -> tuple[Sequence[tuple[Locator, list[Buffer], bool]], bool]:
+        """Return, under the lock, what is to be sent, and whether the thread must be woken up."""
+        sent = self._outbox[:]
+        self._outbox.clear()
+        is_wake = self._core.due < self._wakes_at or bool(self._core.calls)
+        if is_wake:
+            self._wakes_at = -math.inf  # once is enough
+        return sent, is_wake
+
+    def _send(self, sent: Sequence[tuple[Locator, list[Buffer], bool]], is_wake: bool) -> None:
+        send = self._sockets.send
+        for address, buffers, is_paced in sent:
+            send(address, buffers, is_paced)
+        if is_wake:
+            self._sockets.wake()
+
+    # The thread
+
+    def _run(self) -> None:
+        while self._is_open:
+            self._sockets.receive(self._do_due(), self._on_datagram)
+        self._sockets.close()
+
+    def _do_due(self) -> float:
+        """Do what is due; return for how many seconds there is nothing to do."""
+        with self._lock:
+            now = time.monotonic()
+            if now >= self._core.due:
+                self._core.tick(now)
+            sent, calls = self._take()
+            self._wakes_at = due = self._core.due
+        self._act(sent, calls)
+        # A callback may have made something due earlier: then it has woken us, and `receive` returns at once.
+        return max(due - time.monotonic(), 0.0)
+
+    def _on_datagram(self, datagram: memoryview, source: Locator) -> None:
+        with self._lock:
+            self._core.receive(time.monotonic(), datagram, source)
+            sent, calls = self._take()
+        if sent or calls:
+            self._act(sent, calls)
+
+    def _take(self) -> tuple[Sequence[tuple[Locator, list[Buffer], bool]], Sequence[Any]]:
+        sent = calls = _NOTHING
+        if self._outbox:
+            sent = tuple(self._outbox)
+            self._outbox.clear()
+        if self._core.calls:
+            calls = tuple(self._core.calls)
+            self._core.calls.clear()
+        return sent, calls
+
+    def _act(self, sent: Sequence[tuple[Locator, list[Buffer], bool]], calls: Sequence[Any]) -> None:
+        send = self._sockets.send
+        for address, buffers, is_paced in sent:
+            send(address, buffers, is_paced)
+        for function, what, how in calls:
+            try:
+                function(what, how)
+            except Exception:  # noqa: BLE001 - a program's fault must not end the participant
+                _LOG.exception("a callback of the DDS participant failed")
+
+
+class Writer:
+    """A participant's writer."""
+
+    def __init__(self, participant: Participant, local: LocalWriter) -> None:
+        self.guid = local.guid
+        self._participant, self._local = participant, local
+        self._order = threading.Lock()
+        """Samples of two threads leave in the order of their numbers: else they arrive as if one had been lost."""
+
+    def put(self, payload: Buffer, *, related: tuple[bytes, int] | None = None, timestamp: int = 0) -> int:
+        """Send a sample on the caller's thread, and return its number; 0 after the participant was closed.
+
+        It does not wait for readers. A RELIABLE writer keeps what they have not acknowledged: the last `depth` samples,
+        or with a depth of 0 up to `MOST_KEPT` of them. Older ones are lost to a reader that is that slow.
+
+        Args:
+            payload: serialized, with its header of 4 bytes. It is kept, not copied.
+            related: GUID and number of the sample that this one answers.
+            timestamp: nanoseconds since 1970; 0: now.
+        """
+        with self._order:
+            return self._participant._put(self._local, payload, related, timestamp)
+
+    def matched(self) -> list[bytes]:
+        """Return the GUIDs of the readers that it is matched with."""
+        with self._participant._lock:
+            return [*self._local.readers]
+
+    def close(self) -> None:
+        """Withdraw it. Safe to call twice."""
+        self._participant._remove(self._local)
+
+
+class Reader:
+    """A participant's reader."""
+
+    def __init__(self, participant: Participant, local: LocalReader) -> None:
+        self.guid = local.guid
+        self._participant, self._local = participant, local
+
+    def matched(self) -> list[bytes]:
+        """Return the GUIDs of the writers that it is matched with."""
+        with self._participant._lock:
+            return [*self._local.writers]
+
+    def close(self) -> None:
+        """Withdraw it. A sample that is on its way to the sink meanwhile may still come. Safe to call twice."""
+        self._participant._remove(self._local)

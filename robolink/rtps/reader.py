@@ -1,0 +1,364 @@
+"""State machine of a reader: puts in order what arrives, joins fragments, and requests what is missing.
+
+It knows no sockets, threads or clocks: `now` is an argument, in seconds of any steady clock, and what is to be sent
+goes to a function. Source: RTPS 2.5, 8.4.10 to 8.4.12 (StatefulReader, WriterProxy).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from robolink.rtps.parameters import Buffer, Locator
+from robolink.rtps.submessages import MOST_IN_SET, DataFrag, encode_acknack, encode_nack_frag
+from robolink.rtps.types import Info, Qos
+from robolink.rtps.writer import Send
+
+MOST_WAITING = 4_096
+MOST_WAITING_BYTES = 256 << 20
+"""What may wait for an earlier sample, of each writer. What arrives beyond it is dropped, and requested again later."""
+LARGEST_SAMPLE = 1 << 30
+SMALLEST_FRAGMENT = 256
+"""Bytes. What claims to be larger, or comes in smaller pieces, is dropped: each piece costs some 100 bytes more."""
+HIGHEST_NUMBER = 1 << 62
+"""Nobody writes so many samples; from here on, sums would not fit into what is sent."""
+
+_ASK_AFTER, _ASK_SLOWEST = 0.01, 1.0
+"""Seconds until what was requested is requested again; twice as long each time, up to the second."""
+_GREET_AFTER, _GREET_SLOWEST = 0.1, 30.0
+"""The same for the question what a writer has at all. One that never answers does not know us as a match."""
+_FRAGMENTS_LATE = 0.02
+"""Seconds after a fragment in which the next has to arrive."""
+
+Deliver = Callable[[Buffer, Info], object]
+
+
+class _Parts:
+    """A sample of which fragments have arrived."""
+
+    __slots__ = ("ask_at", "delay", "fragment_size", "info", "pieces", "size", "total")
+
+    def __init__(self, info: Info, fragment_size: int, size: int) -> None:
+        self.info, self.fragment_size, self.size = info, fragment_size, size
+        self.total = -(-size // fragment_size)
+        # Pieces, not a buffer of the size that the writer claims: a message costs no more memory than it has bytes.
+        self.pieces: dict[int, bytes] = {}
+        self.ask_at = 0.0
+        """Before this, missing fragments may still be under way."""
+        self.delay = _FRAGMENTS_LATE
+
+    def missing(self) -> list[int]:
+        """Return the first missing fragment, and those behind it that one request can name."""
+        first = next((n for n in range(1, self.total + 1) if n not in self.pieces), self.total + 1)
+        return [n for n in range(first, min(first + MOST_IN_SET, self.total + 1)) if n not in self.pieces]
+
+
+class WriterProxy:
+    """What a reader knows of a writer."""
+
+    __slots__ = (
+        "address",
+        "asked",
+        "base",
+        "bytes",
+        "delay",
+        "due",
+        "guid",
+        "head",
+        "is_known",
+        "last",
+        "next",
+        "parts",
+        "reliable",
+        "serial",
+        "waiting",
+    )
+
+    def __init__(self, guid: bytes, address: Locator, head: bytes, reliable: bool, base: int) -> None:
+        self.guid, self.address, self.head, self.reliable = guid, address, head, reliable
+        self.base = base
+        """With which a reader that has heard nothing of it asks what there is."""
+        self.next = 1
+        """Number of the sample that is delivered next."""
+        self.last = 0
+        """The highest number that it has announced or sent."""
+        self.is_known = False
+        """A heartbeat of it has arrived."""
+        self.waiting: dict[int, tuple[Buffer, Info] | None] = {}
+        """Samples that arrived too early; None: one that will not come."""
+        self.parts: dict[int, _Parts] = {}
+        self.bytes = 0
+        """Of `waiting` and `parts`."""
+        self.serial = 0
+        self.asked = 0
+        """The highest number that was requested."""
+        self.delay = _GREET_AFTER
+        self.due = math.inf
+
+    @property
+    def is_read(self) -> bool:
+        """Whether all has arrived that it has announced."""
+        return self.is_known and self.next > self.last
+
+
+class StatefulReader:
+    """A reader: each writer's samples come out in order and once; of reliable ones all, if the reader is reliable."""
+
+    def __init__(self, guid: bytes, qos: Qos, send: Send, deliver: Deliver) -> None:
+        """Make a reader without writers.
+
+        Args:
+            guid: its own.
+            qos: what it requests.
+            send: gets what is to be sent.
+            deliver: gets the samples.
+        """
+        self.guid, self.qos = guid, qos
+        self.entity = guid[12:]
+        self.writers: dict[bytes, WriterProxy] = {}
+        self.due = math.inf
+        """When `tick` is to be called."""
+        self._send, self._deliver = send, deliver
+
+    # Writers
+
+    def match(self, now: float, guid: bytes, address: Locator, head: bytes, *, reliable: bool, base: int) -> None:
+        """Add a writer, and ask it what it has.
+
+        Args:
+            now: seconds.
+            guid: its own.
+            address: where it receives.
+            head: with which datagrams to it begin: the header, and INFO_DST.
+            reliable: it offers reliability.
+            base: of the ACKNACK that asks: that which its vendor answers at once.
+        """
+        proxy = WriterProxy(guid, address, head, reliable and self.qos.reliable, base)
+        self.writers[guid] = proxy
+        if proxy.reliable:
+            self._greet(now, proxy)
+
+    def unmatch(self, guid: bytes) -> bool:
+        """Forget a writer. Returns whether it was known."""
+        return self.writers.pop(guid, None) is not None
+
+    # What writers send
+
+    def on_data(self, now: float, guid: bytes, payload: Buffer | None, info: Info) -> None:
+        """Take a sample; None: there is none with this number for readers."""
+        proxy = self.writers.get(guid)
+        number = info.number
+        if proxy is None or number >= HIGHEST_NUMBER:
+            return
+        if number == proxy.next or (number > proxy.next and not proxy.reliable):
+            proxy.next = number + 1
+            proxy.last = max(proxy.last, number)
+            if payload is not None:
+                self._deliver(payload, info)
+            if proxy.waiting or proxy.parts:
+                self._advance(proxy)
+        elif number > proxy.next and number not in proxy.waiting:
+            self._hold(now, proxy, payload, info)
+
+    def _hold(self, now: float, proxy: WriterProxy, payload: Buffer | None, info: Info) -> None:
+        """Keep a sample that came too early, and request what is missing before it."""
+        size = len(payload) if payload is not None else 0
+        if len(proxy.waiting) < MOST_WAITING and proxy.bytes + size <= MOST_WAITING_BYTES:
+            proxy.waiting[info.number] = None if payload is None else (payload, info)
+            proxy.bytes += size
+        is_hole = info.number > proxy.last + 1
+        proxy.last = max(proxy.last, info.number)
+        if not proxy.is_known and not self.qos.transient_local:
+            # What was before it may not be meant for this reader: only a heartbeat says where it begins.
+            if not proxy.asked:
+                proxy.asked = 1
+                self._greet(now, proxy)
+        elif is_hole or now >= proxy.due:
+            # At once, not when the next heartbeat comes: Fast DDS's may be 3 s away.
+            self._request(now, proxy)
+        if proxy.parts:
+            self._request_fragments(now, proxy, ended=info.number)
+
+    def on_fragments(self, now: float, guid: bytes, fragments: DataFrag, info: Info) -> None:
+        """Take fragments of a sample."""
+        proxy = self.writers.get(guid)
+        number = info.number
+        if proxy is None or number < proxy.next or number in proxy.waiting or number >= HIGHEST_NUMBER:
+            return
+        parts = proxy.parts.get(number) or self._begin(now, proxy, fragments, info)
+        if parts is None or (parts.fragment_size, parts.size) != (fragments.fragment_size, fragments.sample_size):
+            return
+        self._add(proxy, parts, fragments)
+        if len(parts.pieces) == parts.total:
+            self._forget(proxy, number)
+            payload = b"".join([parts.pieces[n] for n in range(1, parts.total + 1)])
+            self.on_data(now, guid, payload, parts.info)
+        elif proxy.reliable:
+            if parts.total in parts.pieces:
+                # The last is here, and one before it is not. (Asked only once: then they are waited for.)
+                self._request_fragments(now, proxy, ended=number)
+            parts.ask_at = max(parts.ask_at, now + _FRAGMENTS_LATE)
+            self._wake(proxy, parts.ask_at)
+
+    def _add(self, proxy: WriterProxy, parts: _Parts, fragments: DataFrag) -> None:
+        size, payload = parts.fragment_size, fragments.payload
+        # The last in the row begins inside the sample: `parse` has seen to it.
+        for at in range(0, len(payload), size):
+            fragment = fragments.first + at // size
+            if fragment not in parts.pieces:
+                parts.pieces[fragment] = piece = bytes(payload[at : at + size])
+                proxy.bytes += len(piece)
+
+    def _begin(self, now: float, proxy: WriterProxy, fragments: DataFrag, info: Info) -> _Parts | None:
+        """Return room for the fragments of another sample; None if there is not any."""
+        size, number = fragments.sample_size, info.number
+        is_small = fragments.fragment_size < min(SMALLEST_FRAGMENT, size)
+        is_crowded = number != proxy.next and proxy.bytes + size > MOST_WAITING_BYTES
+        if size > LARGEST_SAMPLE or is_small or is_crowded or len(proxy.parts) >= MOST_WAITING:
+            return None
+        if not proxy.reliable:
+            # One newer than two that are not whole: what is missing of the oldest will hardly come any more.
+            for old in sorted(proxy.parts)[:-1]:
+                self._forget(proxy, old)
+        is_hole = number > proxy.last + 1
+        proxy.last = max(proxy.last, number)
+        proxy.parts[number] = parts = _Parts(info, fragments.fragment_size, size)
+        if proxy.reliable and is_hole and (proxy.is_known or self.qos.transient_local):
+            self._request(now, proxy)
+        return parts
+
+    def on_heartbeat(self, now: float, guid: bytes, first: int, last: int, *, final: bool) -> None:
+        """Learn what a writer has: the samples from `first` to `last`; not final: it expects an answer."""
+        proxy = self.writers.get(guid)
+        if proxy is None or not proxy.reliable or last >= HIGHEST_NUMBER:
+            return
+        if not proxy.is_known:
+            proxy.is_known = True
+            proxy.asked, proxy.delay, proxy.due = 0, _ASK_AFTER, math.inf
+        if first > proxy.next:
+            self._skip(proxy, first)
+        proxy.last = max(proxy.last, last)
+        self._request(now, proxy, answer=not final)
+        if proxy.parts:
+            self._request_fragments(now, proxy, ended=last)
+
+    def on_gap(self, now: float, guid: bytes, first: int, base: int, others: Sequence[int]) -> None:
+        """Learn that samples will not come: those from `first` to `base` - 1, and the others."""
+        proxy = self.writers.get(guid)
+        if proxy is None or not proxy.reliable or base >= HIGHEST_NUMBER:
+            return
+        if first <= proxy.next < base:
+            self._skip(proxy, base)
+        end = proxy.next + MOST_WAITING  # it may claim 2^63 of them
+        for number in (*range(max(first, proxy.next), min(base, end)), *others):
+            if proxy.next <= number < end and number not in proxy.waiting:
+                self._forget(proxy, number)
+                proxy.waiting[number] = None
+        self._advance(proxy)
+
+    # In order
+
+    def _skip(self, proxy: WriterProxy, first: int) -> None:
+        """Go on with a number: what is missing before it will not come."""
+        for number in sorted(number for number in proxy.waiting if number < first):
+            self._release(proxy, number)
+        proxy.next = first
+        self._advance(proxy)
+
+    def _advance(self, proxy: WriterProxy) -> None:
+        """Deliver what waited only for the samples before it."""
+        while proxy.next in proxy.waiting:
+            proxy.next += 1
+            self._release(proxy, proxy.next - 1)
+        for number in [number for number in proxy.parts if number < proxy.next]:
+            self._forget(proxy, number)
+        if proxy.is_known:
+            proxy.delay = _ASK_AFTER
+            if proxy.next > proxy.last:
+                proxy.due = math.inf
+
+    def _release(self, proxy: WriterProxy, number: int) -> None:
+        item = proxy.waiting.pop(number)
+        if item is not None:
+            proxy.bytes -= len(item[0])
+            self._deliver(*item)
+
+    def _forget(self, proxy: WriterProxy, number: int) -> None:
+        parts = proxy.parts.pop(number, None)
+        if parts is not None:
+            proxy.bytes -= sum(map(len, parts.pieces.values()))
+
+    # Requests
+
+    def tick(self, now: float) -> None:
+        """Request again what was requested and has not come."""
+        if now < self.due:
+            return
+        self.due = math.inf
+        for proxy in self.writers.values():
+            if now >= proxy.due:
+                proxy.due = math.inf
+                if proxy.is_known:
+                    self._request(now, proxy, again=True)
+                else:
+                    self._greet(now, proxy)
+                self._request_fragments(now, proxy)
+            self.due = min(self.due, proxy.due)
+
+    def _wake(self, proxy: WriterProxy, when: float) -> None:
+        proxy.due = min(proxy.due, when)
+        self.due = min(self.due, proxy.due)
+
+    def _greet(self, now: float, proxy: WriterProxy) -> None:
+        """Ask a writer what it has (a "preemptive" ACKNACK), and again until it says so."""
+        self._acknack(proxy, proxy.base, [], final=False)
+        self._wake(proxy, now + proxy.delay)
+        proxy.delay = min(2 * proxy.delay, _GREET_SLOWEST)
+
+    def _request(self, now: float, proxy: WriterProxy, *, answer: bool = False, again: bool = False) -> None:
+        """Request what is missing, unless it was requested just now.
+
+        Args:
+            now: seconds.
+            proxy: of whom.
+            answer: acknowledge what is there if nothing is missing.
+            again: also what was requested before.
+        """
+        missing = self._missing(proxy)
+        if missing and (again or missing[-1] > proxy.asked or now >= proxy.due):
+            proxy.asked = missing[-1]
+            self._acknack(proxy, proxy.next, missing, final=False)
+            self._wake(proxy, now + proxy.delay)
+            proxy.delay = min(2 * proxy.delay, _ASK_SLOWEST)
+        elif answer and not missing:
+            self._acknack(proxy, proxy.next, [], final=True)
+
+    def _missing(self, proxy: WriterProxy) -> list[int]:
+        """Return the samples of which nothing is there, as many as one request can name."""
+        end = min(proxy.last + 1, proxy.next + MOST_IN_SET)
+        return [n for n in range(proxy.next, end) if n not in proxy.waiting and n not in proxy.parts]
+
+    def _acknack(self, proxy: WriterProxy, base: int, missing: Sequence[int], *, final: bool) -> None:
+        proxy.serial += 1
+        raw = encode_acknack(self.entity, proxy.guid[12:], base, missing, proxy.serial & 0x7FFFFFFF, final=final)
+        self._send(proxy.address, [proxy.head, raw], False)
+
+    def _request_fragments(self, now: float, proxy: WriterProxy, ended: int = 0) -> None:
+        """Request missing fragments that should have come.
+
+        Args:
+            now: seconds.
+            proxy: of whom.
+            ended: of samples up to this number, no fragment is under way any more, unless it was requested.
+        """
+        if not proxy.reliable:
+            return
+        for number, parts in proxy.parts.items():
+            is_late = now >= parts.ask_at
+            if is_late or (number <= ended and parts.delay == _FRAGMENTS_LATE):
+                proxy.serial += 1
+                raw = encode_nack_frag(self.entity, proxy.guid[12:], number, parts.missing(), proxy.serial & 0x7FFFFFFF)
+                self._send(proxy.address, [proxy.head, raw], False)
+                parts.ask_at = now + parts.delay
+                parts.delay = min(2 * parts.delay, _ASK_SLOWEST)
+            self._wake(proxy, parts.ask_at)

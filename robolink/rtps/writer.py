@@ -1,0 +1,415 @@
+"""State machine of a writer: what it keeps, who has acknowledged what, and what is sent again.
+
+It knows no sockets, threads or clocks: `now` is an argument, in seconds of any steady clock, and what is to be sent
+goes to a function. Source: RTPS 2.5, 8.4.7 to 8.4.9 (StatefulWriter, ReaderProxy).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from robolink.rtps.ids import UNKNOWN_ENTITY
+from robolink.rtps.parameters import Buffer, Locator
+from robolink.rtps.submessages import (
+    Inline,
+    encode_data,
+    encode_data_frag,
+    encode_gap,
+    encode_heartbeat,
+    encode_info_timestamp,
+    encode_inline,
+)
+from robolink.rtps.types import Qos
+
+Send = Callable[[Locator, list[Buffer], bool], object]
+"""Takes the pieces of a datagram for an address; True: one of many, between which the receiver needs pauses."""
+
+FRAGMENT = 63 * 1024
+"""Bytes of a fragment, and of the largest sample that is sent whole: a datagram of UDP has room for 65,507."""
+MOST_KEPT = 5_000
+MOST_KEPT_BYTES = 256 << 20
+"""What a writer that keeps all keeps at most. Then the oldest samples go, as with a depth: readers that did not have
+them get a GAP. So a reader that stands still costs no more than this, and `put` never waits."""
+
+_HEARTBEAT_AFTER, _HEARTBEAT_SLOWEST = 0.05, 1.0
+"""Seconds until a reader that has not acknowledged is reminded; twice as long each time, up to the second."""
+_REMIND_SAMPLES, _REMIND_BYTES = 32, 256 << 10
+"""What may be under way before the heartbeat that goes with each sample requests an acknowledgement."""
+_REPAIR_BYTES = 8 << 20
+"""What one ACKNACK gets at most; the heartbeat behind it makes the reader request the rest."""
+_REPAIR_PAUSE, _REPAIR_RATE = 0.01, 100e6
+"""A large sample that was sent again is not sent once more before it can have arrived, at this many bytes a second."""
+_BUNDLE = 16 << 10
+"""Bytes of small samples that go into one datagram when several are sent again."""
+
+
+class Change(NamedTuple):
+    """A sample that a writer keeps."""
+
+    number: int
+    payload: Buffer | None
+    inline: bytes
+    timestamp: int
+    is_key: bool
+    is_kept: bool
+    """For readers that come later; else only until all have acknowledged it."""
+
+    @property
+    def size(self) -> int:
+        """Bytes of the payload."""
+        return len(self.payload) if self.payload is not None else 0
+
+
+class ReaderProxy:
+    """What a writer knows of a reader."""
+
+    __slots__ = ("acked", "address", "first", "guid", "head", "reliable", "repaired", "serial")
+
+    def __init__(self, guid: bytes, address: Locator, head: bytes, reliable: bool, first: int) -> None:
+        self.guid, self.address, self.head, self.reliable = guid, address, head, reliable
+        self.first = first
+        """Number of the first sample that is meant for it."""
+        self.acked = first
+        """It has acknowledged all before this."""
+        self.serial: int | None = None
+        """Of its last ACKNACK; None: there was not any."""
+        self.repaired: dict[int, float] = {}
+        """Large samples that were sent again: until when they may be under way."""
+
+
+class _Route:
+    """The readers behind one address: a sample goes there once."""
+
+    __slots__ = ("address", "entity", "first", "head", "reliable")
+
+    def __init__(self, proxies: Sequence[ReaderProxy]) -> None:
+        self.address, self.head = proxies[0].address, proxies[0].head
+        # One datagram to "all readers that are matched with this writer": one each would be delivered to all of them by
+        # some, and costs each sample's size again.
+        self.entity = proxies[0].guid[12:] if len(proxies) == 1 else UNKNOWN_ENTITY
+        self.reliable = [proxy for proxy in proxies if proxy.reliable]
+        self.first = max((proxy.first for proxy in self.reliable), default=0)
+
+
+class StatefulWriter:
+    """A writer, reliable or best-effort, volatile or with samples for readers that come later."""
+
+    def __init__(self, guid: bytes, qos: Qos, send: Send, most: int = MOST_KEPT) -> None:
+        """Make a writer without readers.
+
+        Args:
+            guid: its own.
+            qos: what it offers.
+            send: gets what is to be sent.
+            most: samples that it keeps at most where it keeps all.
+        """
+        self.guid, self.qos = guid, qos
+        self.entity = guid[12:]
+        self.readers: dict[bytes, ReaderProxy] = {}
+        self.last = 0
+        """Number of the last sample."""
+        self.due = math.inf
+        """When `tick` is to be called."""
+        self.lost = 0
+        """Samples that were dropped because MOST_KEPT or MOST_KEPT_BYTES was reached."""
+        self._send = send
+        self._history: dict[int, Change] = {}
+        """Rising by number; there may be holes."""
+        self._kept_bytes = 0
+        self._passing = 0
+        """Samples in the history that are kept only until all have acknowledged them."""
+        self._most = most
+        self._serial = 0
+        self._delay = _HEARTBEAT_AFTER
+        self._under_way = self._bytes_under_way = 0
+        """Since the last heartbeat that requested an acknowledgement."""
+        self._routes: list[_Route] = []
+
+    @property
+    def first(self) -> int:
+        """Number of the first sample that is still there; `last` + 1 if there is none."""
+        return next(iter(self._history), self.last + 1)
+
+    # Readers
+
+    def match(self, now: float, guid: bytes, address: Locator, head: bytes, *, reliable: bool, wants_old: bool) -> None:
+        """Add a reader.
+
+        Args:
+            now: seconds.
+            guid: its own.
+            address: where it receives.
+            head: with which datagrams to it begin: the header, and INFO_DST.
+            reliable: it requests reliability.
+            wants_old: it requests the samples that are kept for readers that come later.
+        """
+        first = 1 if wants_old and self.qos.transient_local else self.last + 1
+        proxy = ReaderProxy(guid, address, head, reliable and self.qos.reliable, first)
+        self.readers[guid] = proxy
+        self._reroute()
+        if proxy.reliable:
+            self._heartbeat(proxy)
+            self._expect(now)
+        elif first <= self.last:
+            self._resend(now, proxy, [change for change in self._history.values() if change.is_kept])
+
+    def unmatch(self, guid: bytes) -> bool:
+        """Forget a reader. Returns whether it was known."""
+        if self.readers.pop(guid, None) is None:
+            return False
+        self._reroute()
+        self._forget_acknowledged()
+        return True
+
+    def _reroute(self) -> None:
+        places: dict[tuple[Locator, bytes], list[ReaderProxy]] = {}
+        for proxy in self.readers.values():
+            places.setdefault((proxy.address, proxy.guid[:12]), []).append(proxy)
+        self._routes = [_Route(proxies) for proxies in places.values()]
+
+    # Samples
+
+    def put(
+        self,
+        now: float,
+        payload: Buffer | None,
+        inline: Inline | None = None,
+        timestamp: int = 0,
+        *,
+        is_key: bool = False,
+        is_kept: bool | None = None,
+    ) -> int:
+        """Send a sample to all readers, and keep it for as long as some may need it.
+
+        Args:
+            now: seconds.
+            payload: serialized, with its header of 4 bytes.
+            inline: what goes with it.
+            timestamp: nanoseconds since 1970; 0: unknown.
+            is_key: the payload is a key: of something that is gone.
+            is_kept: whether it is kept for readers that come later; if not said, the writer's durability decides.
+
+        Returns:
+            Its number.
+        """
+        self.last = number = self.last + 1
+        kept = self.qos.transient_local if is_kept is None else is_kept
+        change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, kept)
+        reliable = any(route.reliable for route in self._routes)
+        if kept or reliable:
+            self._history[number] = change
+            self._kept_bytes += change.size
+            self._passing += not kept
+            self._trim()
+        if self._routes:
+            final = not self._reminds(change)
+            for route in self._routes:
+                beats = self._route_beats(route, final=final) if route.reliable else b""
+                self._send_change(route.address, route.head, route.entity, change, beats)
+            if reliable:
+                self._expect(now)
+        return number
+
+    def discard(self, number: int) -> None:
+        """Drop a kept sample that something newer replaces: nobody gets it any more."""
+        self._drop(number)
+
+    def _drop(self, number: int) -> None:
+        change = self._history.pop(number, None)
+        if change is not None:
+            self._kept_bytes -= change.size
+            self._passing -= not change.is_kept
+
+    def _trim(self) -> None:
+        if depth := self.qos.depth:
+            while len(self._history) > depth:
+                self._drop(next(iter(self._history)))
+            return
+        while len(self._history) > self._most or (self._kept_bytes > MOST_KEPT_BYTES and len(self._history) > 1):
+            self._drop(next(iter(self._history)))
+            self.lost += 1
+
+    def _reminds(self, change: Change) -> bool:
+        """Return whether the heartbeat that goes with a sample requests an acknowledgement.
+
+        Most do not: a reader that lacks something says so anyway, and at 1,000 samples a second an answer to each would
+        cost both ends more than the samples do.
+        """
+        self._under_way += 1
+        self._bytes_under_way += change.size
+        if self._under_way < _REMIND_SAMPLES and self._bytes_under_way < _REMIND_BYTES:
+            return False
+        self._under_way = self._bytes_under_way = 0
+        return True
+
+    def _send_change(
+        self,
+        address: Locator,
+        head: bytes,
+        entity: bytes,
+        change: Change,
+        beats: bytes,
+        fragments: Sequence[int] | None = None,
+    ) -> None:
+        """Send a sample, whole or in fragments (all, or those), and heartbeats behind it."""
+        stamp = encode_info_timestamp(change.timestamp)
+        payload = change.payload
+        if payload is None or len(payload) <= FRAGMENT:
+            data = encode_data(entity, self.entity, change.number, payload, change.inline, is_key=change.is_key)
+            self._send(address, [head, stamp, data, beats], False)
+            return
+        total = -(-len(payload) // FRAGMENT)
+        chosen = range(1, total + 1) if fragments is None else [n for n in fragments if n <= total]
+        last = chosen[-1] if chosen else 0
+        for fragment in chosen:
+            pieces = encode_data_frag(
+                entity, self.entity, change.number, fragment, FRAGMENT, payload, change.inline, is_key=change.is_key
+            )
+            self._send(address, [head, stamp, *pieces, beats if fragment == last else b""], True)
+
+    # Heartbeats
+
+    def _beat(self, entity: bytes, first: int, *, final: bool) -> bytes:
+        self._serial += 1
+        return encode_heartbeat(
+            entity, self.entity, max(self.first, first), self.last, self._serial & 0x7FFFFFFF, final=final
+        )
+
+    def _route_beats(self, route: _Route, *, final: bool) -> bytes:
+        """Return the heartbeats for the readers behind an address: one, unless they may have different samples."""
+        if len(route.reliable) == 1:
+            return self._beat(route.reliable[0].guid[12:], route.first, final=final)
+        if self.first >= route.first:
+            return self._beat(UNKNOWN_ENTITY, 0, final=final)
+        return b"".join(self._beat(proxy.guid[12:], proxy.first, final=final) for proxy in route.reliable)
+
+    def _heartbeat(self, proxy: ReaderProxy, *, final: bool = False) -> None:
+        self._send(proxy.address, [proxy.head, self._beat(proxy.guid[12:], proxy.first, final=final)], False)
+
+    def _expect(self, now: float) -> None:
+        """See to it that readers that do not acknowledge are reminded."""
+        if self.due == math.inf and self._behind():
+            self._delay = _HEARTBEAT_AFTER
+            self.due = now + self._delay
+
+    def _behind(self) -> bool:
+        return any(proxy.acked <= self.last for route in self._routes for proxy in route.reliable)
+
+    def tick(self, now: float) -> None:
+        """Remind readers that have not acknowledged everything. With none, nothing is sent: an idle writer is quiet."""
+        if now < self.due:
+            return
+        self.due = math.inf
+        for route in self._routes:
+            if any(proxy.acked <= self.last for proxy in route.reliable):
+                self._send(route.address, [route.head, self._route_beats(route, final=False)], False)
+                self._delay = min(2 * self._delay, _HEARTBEAT_SLOWEST)
+                self.due = now + self._delay
+
+    # What readers send
+
+    def on_acknack(
+        self, now: float, guid: bytes, base: int, missing: Sequence[int], serial: int, *, final: bool
+    ) -> None:
+        """Send what a reader requests again, and forget what all have."""
+        proxy = self.readers.get(guid)
+        # The same serial number is the same datagram, that came twice. A smaller one is not old: a reader that lost
+        # sight of us for a while begins anew.
+        if proxy is None or not proxy.reliable or serial == proxy.serial:
+            return
+        proxy.serial = serial
+        if proxy.acked < base <= self.last + 1:
+            proxy.acked = base
+            self._delay = _HEARTBEAT_AFTER
+            proxy.repaired = {number: until for number, until in proxy.repaired.items() if number >= base}
+            self._forget_acknowledged()
+        wanted = [number for number in missing if 0 < number <= self.last]
+        if wanted:
+            self._repair(now, proxy, wanted)
+        elif not final:
+            # It asks what there is, perhaps before it has heard any heartbeat.
+            self._heartbeat(proxy, final=proxy.acked > self.last)
+
+    def on_nack_frag(self, now: float, guid: bytes, number: int, missing: Sequence[int]) -> None:
+        """Send fragments of a sample again."""
+        proxy = self.readers.get(guid)
+        if proxy is None or not proxy.reliable:
+            return
+        change = self._history.get(number)
+        if change is None or number < proxy.first:
+            self._send_gap(proxy, [number])
+        elif missing:
+            beat = self._beat(guid[12:], proxy.first, final=False)
+            self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
+        self._expect(now)
+
+    def _repair(self, now: float, proxy: ReaderProxy, wanted: Sequence[int]) -> None:
+        again: list[Change] = []
+        gone: list[int] = []
+        size = 0
+        for number in wanted:
+            change = self._history.get(number)
+            if change is None or number < proxy.first:
+                gone.append(number)
+            elif now >= proxy.repaired.get(number, 0.0) and (not again or size + change.size <= _REPAIR_BYTES):
+                again.append(change)
+                size += change.size
+                if change.size > FRAGMENT:
+                    proxy.repaired[number] = now + _REPAIR_PAUSE + change.size / _REPAIR_RATE
+        if gone:
+            self._send_gap(proxy, gone)
+        self._resend(now, proxy, again)
+        self._expect(now)
+
+    def _resend(self, now: float, proxy: ReaderProxy, changes: Sequence[Change]) -> None:
+        """Send samples again, several small ones in a datagram, and a heartbeat behind them that requests an answer."""
+        entity = proxy.guid[12:]
+        bundle: list[Buffer] = []
+        size = 0
+        for change in changes:
+            if change.size > _BUNDLE:
+                self._flush(proxy, bundle)
+                bundle, size = [], 0
+                self._send_change(proxy.address, proxy.head, entity, change, b"")
+                continue
+            bundle += (
+                encode_info_timestamp(change.timestamp),
+                encode_data(entity, self.entity, change.number, change.payload, change.inline, is_key=change.is_key),
+            )
+            size += change.size
+            if size > _BUNDLE:
+                self._flush(proxy, bundle)
+                bundle, size = [], 0
+        if proxy.reliable and changes:
+            bundle.append(self._beat(entity, proxy.first, final=False))
+        self._flush(proxy, bundle)
+
+    def _flush(self, proxy: ReaderProxy, bundle: Sequence[Buffer]) -> None:
+        if bundle:
+            self._send(proxy.address, [proxy.head, *bundle], False)
+
+    def _send_gap(self, proxy: ReaderProxy, numbers: Sequence[int]) -> None:
+        """Tell a reader that samples will not come; the numbers are rising and span at most 256."""
+        base = numbers[0] + 1
+        rest = 1
+        while rest < len(numbers) and numbers[rest] == base:
+            base += 1
+            rest += 1
+        gap = encode_gap(proxy.guid[12:], self.entity, numbers[0], base, numbers[rest:])
+        self._send(proxy.address, [proxy.head, gap], False)
+
+    def _forget_acknowledged(self) -> None:
+        """Drop the samples that are kept only until every reader has them."""
+        if not self._passing:
+            return
+        acked = min((proxy.acked for route in self._routes for proxy in route.reliable), default=self.last + 1)
+        gone = []
+        for number, change in self._history.items():
+            if number >= acked:
+                break
+            if not change.is_kept:
+                gone.append(number)
+        for number in gone:
+            self._drop(number)
