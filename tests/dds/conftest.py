@@ -45,10 +45,13 @@ def free_dds_domain() -> Iterator[int]:
     raise RuntimeError("all domains for tests of DDS are in use")
 
 
-def real(name: str) -> list[str]:
-    """Return the command of a real ROS 2's Python; skip the test where there is none."""
+def skip_without_dds() -> None:
     if importlib.util.find_spec("robolink.dds.transport") is None:
         pytest.skip("there is no --network dds yet")
+
+
+def real(name: str) -> list[str]:
+    """Return the command of a real ROS 2's Python; skip the test where there is none."""
     try:
         return installed(DISTRIBUTIONS[name])
     except NoWheelsError as reason:
@@ -106,6 +109,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def lab(programs: Path) -> Iterator[Lab]:
     """A domain of its own for a test that starts and ends processes."""
+    skip_without_dds()
     with free_dds_domain() as domain:
         yield Lab(domain, programs)
 
@@ -117,6 +121,7 @@ WAYS = [(distribution, way) for way in ("direct", "bridge") for distribution in 
 def scene(request: pytest.FixtureRequest, programs: Path) -> Iterator[Scene]:
     """A real ROS 2 and robolink, each way: the same processes for all tests of a way."""
     distribution, way = request.param
+    skip_without_dds()
     real(distribution)
     with contextlib.ExitStack() as stack:
         lab = Lab(stack.enter_context(free_dds_domain()), programs)
