@@ -139,10 +139,10 @@ def packed(value: int) -> bytes:
     return bytes(serialize_message(Int32(data=value)))
 
 
-def inlets(scene: Mirrored) -> list[Any]:
+def crossings(scene: Mirrored) -> list[Any]:
     assert scene.mirror is not None
     flows = [flow for place in scene.mirror._places.values() for flow in place.flows]
-    return [inlet for flow in flows for inlet in getattr(flow, "_inlets", {}).values()]
+    return [flow.crossing for flow in flows if hasattr(flow, "crossing")]
 
 
 def services(scene: Mirrored) -> list[Any]:

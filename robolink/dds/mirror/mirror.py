@@ -163,6 +163,8 @@ class Mirror:
             pass
         except RobolinkError as error:
             self._report(f"something cannot be mirrored: {error}")
+        except Exception as error:  # noqa: BLE001 - what one announcement does must not end the others
+            self._report(f"something cannot be mirrored: {type(error).__name__}: {error}")
 
     def _report(self, text: str) -> None:
         if text not in self._reported and len(self._reported) < _MOST_REPORTED:

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from robolink import Node
+from robolink.dds.mirror.crossing import KNOWN_WITHIN
 from robolink.dds.mirror.mirror import LINGER
-from robolink.dds.mirror.topics import KNOWN_WITHIN
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import Int32, String
 from robolink.message import type_hash
@@ -26,7 +26,7 @@ from robolink.wire import (
     parse_token,
     unpack_attachment,
 )
-from tests.support.mirrored import Half, Mirrored, heard, inlets, packed, raw_tokens, send
+from tests.support.mirrored import Half, Mirrored, crossings, heard, packed, raw_tokens, send
 
 
 def test_the_graph_has_each_node_with_its_own_name_on_both_sides(pair: tuple[Mirrored, Half, Half]) -> None:
@@ -121,7 +121,7 @@ def test_data_that_comes_before_the_announcement_waits_for_it(joined: Mirrored) 
     joined.run(KNOWN_WITHIN + 0.5)
     assert got == [1, 2]
     assert joined.mirror is not None
-    assert all(not each._parked and not each._bytes_parked for each in inlets(joined))
+    assert all(not each._parked and not each._bytes_parked for each in crossings(joined))
 
 
 @pytest.mark.parametrize(

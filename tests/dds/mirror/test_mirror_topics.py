@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
+from robolink import Node
+from robolink.dds.mirror.crossing import KNOWN_WITHIN
 from robolink.dds.mirror.mirror import LINGER
-from robolink.dds.mirror.topics import KNOWN_WITHIN
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.qos import DurabilityPolicy, QoSProfile
 from tests.support.mirrored import Half, Mirrored, heard, send
@@ -174,3 +177,38 @@ def test_a_publisher_that_stays_idle_costs_nothing_but_comes_when_it_is_wanted_a
         listener.destroy_node()
         joined.until(lambda: publisher.get_subscription_count() == 0)
     assert numbers == [0, 1, 2, 3]
+
+
+def test_a_latched_subscription_beside_a_volatile_one_gets_what_was_before(joined: Mirrored) -> None:
+    publisher = joined.a.node("talker").create_publisher(Int32, "chatter", LATCHED)
+    send(publisher, 1)
+    volatile = heard(joined.b.node("volatile"))
+    joined.run(0.2)
+    latched = heard(joined.b.node("latched"), qos=LATCHED)
+    joined.until(lambda: latched == [1])
+    send(publisher, 2)
+    joined.run(2.0)
+    assert latched == [1, 2]
+    assert volatile[-1] == 2
+    assert len(volatile) == len(set(volatile))
+
+
+@pytest.mark.parametrize("qos", [10, QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)])
+def test_who_stays_misses_and_repeats_nothing(pair: tuple[Mirrored, Half, Half], qos: Any) -> None:
+    scene, here, there = pair
+    publisher = here.node("talker").create_publisher(Int32, "chatter", qos)
+    first = there.node("first")  # the one that feeds the mirror goes while the others stay
+    heard(first, qos=LATCHED)
+    stays = heard(there.node("stays"), qos=QoSProfile(depth=100))
+    scene.until(lambda: publisher.get_subscription_count() == 2)
+    others: list[Node] = [first]
+    for value in range(60):
+        send(publisher, value)
+        scene.turn()
+        if value % 5 == 0:
+            others.append(there.node(f"other{value}"))
+            heard(others[-1], qos=LATCHED if value % 2 else QoSProfile(depth=3))
+        elif value % 5 == 3:
+            others.pop(0).destroy_node()
+    scene.run(0.5)
+    assert stays == list(range(60))
