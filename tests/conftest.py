@@ -6,6 +6,7 @@ of its file.
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import os
 import platform
@@ -183,16 +184,30 @@ def domain() -> Iterator[int]:
         yield number
 
 
-@pytest.fixture(params=["memory", "zenoh"])
+@pytest.fixture(params=["memory", "zenoh", pytest.param("dds", marks=pytest.mark.annex("dds"))])
 def net(request: pytest.FixtureRequest) -> Iterator[Network]:
-    if request.param == "memory":
-        bus = Bus()
-        network = Network(lambda: MemoryTransport(bus=bus))
-    else:
-        number = request.getfixturevalue("domain")
-        network = Network(lambda: ZenohTransport(number, environ={}))
-    yield network
-    network.close()
+    with contextlib.ExitStack() as stack:
+        if request.param == "memory":
+            bus = Bus()
+            network = Network(lambda: MemoryTransport(bus=bus))
+        elif request.param == "zenoh":
+            number = request.getfixturevalue("domain")
+            network = Network(lambda: ZenohTransport(number, environ={}))
+        else:
+            if (mark := request.node.get_closest_marker("unlike_dds")) is not None:
+                pytest.skip(mark.args[0])
+            network = stack.enter_context(dds_in_memory())
+        yield network
+        network.close()
+
+
+@contextlib.contextmanager
+def dds_in_memory() -> Iterator[Network]:
+    from robolink.dds.transport import DdsTransport
+    from tests.support.fake_rtps import FakeNetwork
+
+    with contextlib.closing(FakeNetwork()) as fake:
+        yield Network(lambda: DdsTransport(fake.open))
 
 
 @pytest.fixture

@@ -24,6 +24,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 
 ANNEXES = {
+    "dds": [
+        "robolink/dds",
+        "robolink/rtps",
+        "tests/dds",
+        "tests/rtps",
+        "tests/support/fake_rtps.py",
+    ],
     "learn": [
         "robolink/learn",
         "robolink/cli/learn",

@@ -130,6 +130,10 @@ class Caller:
         arrived = iter(functools.partial(self.arrived.get, timeout=PATIENCE), None)
         return [self.session.read(each) for each in arrived]
 
+    def answers(self) -> list[bytes]:
+        """The payloads of everything up to the end."""
+        return [each.payload for each in self.replies()]
+
 
 def find(caller_session: Transport, desk: Desk) -> None:
     """Wait until the caller's session knows of the server."""

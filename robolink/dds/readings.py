@@ -1,0 +1,156 @@
+"""Readings: the DDS readers of one subscription, which feed one sink."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from robolink.dds.names import hash_in
+from robolink.dds.nodes import Guids
+from robolink.dds.profiles import announced, shortcomings
+from robolink.dds.streams import Stream
+from robolink.logging import get_logger
+from robolink.qos import QoSProfile
+from robolink.rtps.types import Endpoint, Info, Qos
+from robolink.system import clocks, heap
+from robolink.system.waits import fork_lock
+from robolink.transport.base import Sink
+from robolink.transport.history import latched_depth
+from robolink.wire import NO_HASH, format_qos, pack_attachment
+
+if TYPE_CHECKING:
+    from robolink.dds.topics import Topics
+    from robolink.rtps import Reader
+
+_MOST_HELD = 100
+"""Most writers whose samples are held for a sink that is still to come."""
+
+
+class Reading:
+    """Readers of one subscription: one that requests its profile, and others for the writers that offer less.
+
+    DDS lets a reader and a writer that offers less never meet; over Zenoh they would, and the weaker policy hold. So
+    such writers are read too, by a reader that requests no more than they offer, and a warning says what ROS 2 does.
+    """
+
+    def __init__(self, topics: Topics, stream: Stream, qos: QoSProfile, gate: Sink | None = None) -> None:
+        self.stream, self.profile = stream, format_qos(qos)
+        self.has_token = False
+        self.on_guids: Callable[[], object] = lambda: None
+        """Function called when there is one more reader."""
+        self._topics, self._gate = topics, gate
+        self._lock = fork_lock()
+        self._requested, self._depth = announced(qos), latched_depth(qos)
+        self._held: dict[bytes, deque[tuple[bytes, bytes]]] = {}
+        self._lenient: dict[bool, Reader] = {}
+        """Readers of the writers that offer less, by whether these are reliable."""
+        self._reader = self._make(self._requested, self._has_hash)
+
+    def _make(self, qos: Qos, accepts: Callable[[Endpoint], bool]) -> Reader:
+        stream = self.stream
+        return self._topics.participant.reader(
+            stream.topic, stream.dds_type, qos, self._on_sample, user_data=stream.user_data, accepts=accepts
+        )
+
+    def _has_hash(self, writer: Endpoint) -> bool:
+        """Return whether a writer has the type of this hash; one that does not tell it is taken at its word."""
+        told = hash_in(writer.user_data)
+        return NO_HASH in (told, self.stream.type_hash) or told == self.stream.type_hash
+
+    @property
+    def is_free(self) -> bool:
+        """True if no subscription has what comes here."""
+        return self._gate is None or self._gate is _drop
+
+    @property
+    def guids(self) -> Guids:
+        """GUIDs of the readers."""
+        return Guids(readers=tuple(each.guid for each in self._readers))
+
+    @property
+    def _readers(self) -> list[Reader]:
+        return [self._reader, *self._lenient.values()]
+
+    def meet(self, writer: Endpoint) -> None:
+        """Read a writer that offers less than is requested by a reader of its own; for others there is one."""
+        lacking = shortcomings(self._requested, writer.qos)
+        is_reliable = writer.qos.reliable
+        if not lacking or is_reliable in self._lenient or not self._has_hash(writer):
+            return
+
+        def accepts(other: Endpoint) -> bool:
+            is_meant = other.qos.reliable == is_reliable and self._has_hash(other)
+            return is_meant and bool(shortcomings(self._requested, other.qos))
+
+        self._lenient[is_reliable] = self._make(Qos(reliable=is_reliable, depth=self._requested.depth), accepts)
+        self.on_guids()
+        get_logger("robolink.dds").warning(
+            f"{self.stream.name}: a publisher offers less {' and '.join(lacking)} than a subscription here requests:"
+            " it is heard in robolink, but a subscription of ROS 2 would get nothing from it over DDS"
+        )
+
+    # What comes
+
+    def _on_sample(self, payload: bytes, info: Info) -> None:
+        gid = self._topics.gids.get(info.writer, info.writer)
+        pair = payload, pack_attachment(info.number, info.timestamp or clocks.now(), gid)
+        if len(payload) >= heap.LARGE:
+            heap.note(len(payload))
+        gate = self._gate
+        if gate is None:
+            self._hold(info.writer, pair)
+        else:
+            gate(pair)
+
+    def _hold(self, writer: bytes, pair: tuple[bytes, bytes]) -> None:
+        """Hold a latched sample for the subscription that is still to come."""
+        with self._lock:
+            if (gate := self._gate) is not None:
+                gate(pair)
+            elif self._requested.transient_local and (writer in self._held or len(self._held) < _MOST_HELD):
+                self._held.setdefault(writer, deque(maxlen=self._depth)).append(pair)
+
+    def feed(self, gate: Sink) -> None:
+        """Feed a sink from now on; with TRANSIENT_LOCAL first with what was held for it."""
+        if self._gate is _drop and self._requested.transient_local:
+            self._read_anew()
+        with self._lock:
+            held, self._held = self._held, {}
+            for pairs in held.values():
+                for pair in pairs:
+                    gate(pair)
+            self._gate = gate
+
+    def _read_anew(self) -> None:
+        """Replace the readers: what writers keep for late joiners comes once to each reader."""
+        self._gate = None
+        before = self._readers
+        self._lenient = {}
+        self._reader = self._make(self._requested, self._has_hash)
+        for reader in before:
+            reader.close()
+        for writer in self._topics.writers_at(self.stream.place):
+            self.meet(writer)
+        self.on_guids()
+
+    def starve(self) -> None:
+        """Feed the sink no longer; without a token the readers go too."""
+        self._gate = _drop
+        if not self.has_token:
+            self._close()
+
+    def withdraw(self) -> None:
+        """Withdraw the token; without a sink the readers go too."""
+        self.has_token = False
+        if self.is_free:
+            self._close()
+
+    def _close(self) -> None:
+        self._topics.remove(self)
+        for reader in self._readers:
+            reader.close()
+
+
+def _drop(_: object) -> None:
+    """Take a sample that nobody wants any more."""
