@@ -207,7 +207,8 @@ def dds_in_memory() -> Iterator[Network]:
     from tests.support.fake_rtps import FakeNetwork
 
     with contextlib.closing(FakeNetwork()) as fake:
-        yield Network(lambda: DdsTransport(fake.open))
+        opens: Any = fake.open
+        yield Network(lambda: DdsTransport(opens))
 
 
 @pytest.fixture

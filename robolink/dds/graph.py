@@ -16,7 +16,7 @@ from robolink.dds.names import BARE_NODE, Role, RosName, enclave_in, hash_in, ro
 from robolink.dds.profiles import profile_of
 from robolink.dds.tokens import Tokens
 from robolink.exceptions import WireError
-from robolink.rtps.types import Endpoint, Peer
+from robolink.rtps import Endpoint, Peer
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken, format_token, gid_of
 
 Pair = tuple[bytes, str, str, bool]

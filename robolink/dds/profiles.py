@@ -7,7 +7,7 @@ import math
 from robolink.constants import S_TO_NS
 from robolink.duration import Duration, Infinite
 from robolink.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy, resolved
-from robolink.rtps.types import Qos
+from robolink.rtps import Qos
 
 _AUTOMATIC, _MANUAL_BY_TOPIC = 0, 2
 _KEEP_ALL = 0

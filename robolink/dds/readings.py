@@ -12,7 +12,7 @@ from robolink.dds.profiles import announced, shortcomings
 from robolink.dds.streams import Stream
 from robolink.logging import get_logger
 from robolink.qos import QoSProfile
-from robolink.rtps.types import Endpoint, Info, Qos
+from robolink.rtps import Endpoint, Info, Qos
 from robolink.system import clocks, heap
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Sink

@@ -11,7 +11,7 @@ from robolink.dds.nodes import Guids
 from robolink.dds.profiles import announced
 from robolink.dds.streams import Stream
 from robolink.qos import QoSProfile, qos_profile_services_default
-from robolink.rtps.types import Endpoint, Info
+from robolink.rtps import Endpoint, Info
 from robolink.system import clocks
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Sink, refuse_giant

@@ -18,7 +18,7 @@ from robolink.dds.names import Role, user_data_of
 from robolink.dds.servers import DEFAULT, Server
 from robolink.dds.streams import Place, Stream, stream_of
 from robolink.exceptions import TransportClosedError
-from robolink.rtps.types import Endpoint, Peer
+from robolink.rtps import Endpoint, Peer
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Sink, refuse_giant
 from robolink.transport.gates import close_gate, make_gate

@@ -20,7 +20,7 @@ from robolink.dds.readings import Reading
 from robolink.dds.streams import Place, Stream, stream_of
 from robolink.exceptions import TransportClosedError
 from robolink.qos import QoSProfile
-from robolink.rtps.types import Endpoint
+from robolink.rtps import Endpoint
 from robolink.system import heap
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Sink, refuse_giant

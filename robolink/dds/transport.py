@@ -24,7 +24,7 @@ from robolink.dds.topics import Topics
 from robolink.dds.worker import Worker
 from robolink.exceptions import TransportClosedError, TransportError, WireError
 from robolink.qos import QoSProfile
-from robolink.rtps.types import Endpoint, Info, Peer, Qos
+from robolink.rtps import Endpoint, Info, Peer, Qos
 from robolink.system import clocks
 from robolink.transport import lifetime
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport, make_sample

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.dds.profiles import shortcomings
-from robolink.rtps.types import Endpoint, Info, Peer, Qos
+from robolink.rtps import Endpoint, Info, Peer, Qos
 
 OURS, EPROSIMA, ECLIPSE = b"\x01\xee", b"\x01\x0f", b"\x01\x10"
 PATIENCE = 30.0

@@ -13,7 +13,6 @@ import pytest
 from robolink.transport import Query, Transport
 from tests.support.transports import GRAPH, PATIENCE, Caller, Desk, Network, Watcher, find, until
 
-
 TOKENS = "only tokens of ROS 2's nodes and endpoints cross DDS"
 SILENT = "DDS has no sign that a server will not answer"
 
