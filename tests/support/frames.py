@@ -1,9 +1,9 @@
 """Capture of network frames (AF_PACKET): counts what passes an interface, apart from what the kernel sends by itself.
 
-    python -m tests.support.frames INTERFACE
+    python -m tests.support.frames INTERFACE [--sent]
 
 It prints `ready` once it captures, and for each line of its standard input the frames since the last one, as JSON: how
-many there were of each kind. Linux, root.
+many there were of each kind; with --sent, only those that this machine sent. Linux, root.
 """
 
 from __future__ import annotations
@@ -62,6 +62,7 @@ def main() -> None:
     """Count frames, and answer whoever asks."""
     if sys.platform != "linux":
         sys.exit("AF_PACKET is Linux's")
+    sent_only = "--sent" in sys.argv
     with socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(_EVERY_PROTOCOL)) as capture:
         capture.bind((sys.argv[1], _EVERY_PROTOCOL))
         print("ready", flush=True)  # noqa: T201
@@ -69,7 +70,9 @@ def main() -> None:
         while True:
             ready, _, _ = select.select([capture, sys.stdin], [], [])
             if capture in ready:  # first: what came before the question counts
-                found[kind_of(capture.recv(65536))] += 1
+                frame, source = capture.recvfrom(65536)
+                if source[2] == socket.PACKET_OUTGOING or not sent_only:
+                    found[kind_of(frame)] += 1
             elif not sys.stdin.readline():
                 return
             else:

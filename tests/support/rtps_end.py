@@ -1,0 +1,77 @@
+"""Participant of RTPS that obeys its standard input.
+
+    python -m tests.support.rtps_end NAME [--interface I] [--peer P]... [--range R] [--hertz H]
+
+It writes and reads one topic, and prints `ready`. For each line it prints as JSON whom it knows, and how many samples
+it has heard from whom; and it writes another burst of samples of all sizes if the line is `burst`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import selectors
+import sys
+import time
+from collections import Counter
+
+from robolink.rtps import Info, Participant, Qos, Range, Reach
+
+DOMAIN = 20
+TOPIC, TYPE = "rt/ends", "std_msgs::msg::dds_::String_"
+HEADER = b"\0\1\0\0"
+
+
+class End:
+    """A participant with a writer and a reader."""
+
+    def __init__(self, name: str, reach: Reach) -> None:
+        self.heard = Counter[str]()
+        self.participant = Participant(DOMAIN, name=name, reach=reach)
+        self._writer = self.participant.writer(TOPIC, TYPE, Qos(depth=100))
+        self._reader = self.participant.reader(TOPIC, TYPE, Qos(depth=100), self._hear)
+        self._name = name.encode()
+
+    def _hear(self, payload: bytes, _info: Info) -> None:
+        self.heard[bytes(payload).removeprefix(HEADER).split(b"\0", 1)[0].decode()] += 1
+
+    def write(self, size: int = 0) -> None:
+        """Write a sample that says our name."""
+        self._writer.put(HEADER + self._name + b"\0" + bytes(size))
+
+    def report(self) -> str:
+        """Return whom we know and have heard."""
+        peers = sorted(peer.name for peer in self.participant.peers())
+        return json.dumps({"peers": peers, "heard": self.heard, "endpoints": len(self.participant.endpoints())})
+
+
+def main() -> None:
+    """Write, and obey."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("name")
+    parser.add_argument("--interface", default="")
+    parser.add_argument("--peer", action="append", default=[])
+    parser.add_argument("--range", type=Range, default=Range.SUBNET)
+    parser.add_argument("--hertz", type=float, default=20.0)
+    requested = parser.parse_args()
+    end = End(requested.name, Reach(requested.interface, tuple(requested.peer), requested.range))
+    print("ready", flush=True)  # noqa: T201
+    chosen = selectors.DefaultSelector()
+    chosen.register(sys.stdin, selectors.EVENT_READ)
+    due = time.monotonic()
+    while True:
+        if chosen.select(max(due - time.monotonic(), 0.0)):
+            line = sys.stdin.readline()
+            if not line:
+                return
+            if line.strip() == "burst":
+                for size in (0, 100, 10_000, 100_000, 1_000_000):
+                    end.write(size)
+            print(end.report(), flush=True)  # noqa: T201
+        elif time.monotonic() >= due:
+            due += 1 / requested.hertz
+            end.write()
+
+
+if __name__ == "__main__":
+    main()
