@@ -198,9 +198,9 @@ class Sockets:
             return None
         group = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
+            # Not SO_REUSEPORT: with it, Linux (6.18) gave what came in on an interface to one of all sockets with that
+            # option, also to one that had joined the group on another interface only, and to no other.
             group.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            if hasattr(socket, "SO_REUSEPORT"):
-                group.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
             # Bound to the group, so that nothing else can come in here. Windows cannot; there, to one address.
             group.bind((addresses[-1] if _WINDOWS else GROUP, multicast_port(self._domain)))
             if _LINUX:
