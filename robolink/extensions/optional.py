@@ -16,6 +16,9 @@ from robolink.exceptions import RobolinkError
 PAGE = "robolink.view:page_of"
 """Target of the page for the browser."""
 
+PARTICIPANT = "robolink.rtps:Participant"
+"""Target of the participant that meets DDS."""
+
 _PACKAGE = Path(__file__).resolve().parent.parent
 
 

@@ -16,7 +16,16 @@ from robolink.wire.attachment import (
     sender_part,
     unpack_attachment,
 )
-from robolink.wire.bridges import RUNNING, STARTING, BridgeToken, bridge_pattern, format_bridge, parse_bridge
+from robolink.wire.bridges import (
+    RUNNING,
+    STARTING,
+    BridgeToken,
+    bridge_pattern,
+    format_bridge,
+    mark_data,
+    mark_in,
+    parse_bridge,
+)
 from robolink.wire.keys import LONGEST, NO_HASH, DataKey, buffer_key, demangle_type, format_key, mangle_type, parse_key
 from robolink.wire.tokens import (
     CPU_BACKEND,
@@ -62,6 +71,8 @@ __all__ = [
     "graph_pattern",
     "is_attachment",
     "mangle_type",
+    "mark_data",
+    "mark_in",
     "numbers_in",
     "own_tokens",
     "pack_attachment",

@@ -56,3 +56,17 @@ def parse_bridge(text: str) -> BridgeToken:
     domain, session, *words = fields[2:]
     mark, network, state, host = (matched(_WORD, each, "a word") for each in words)
     return BridgeToken(parse_number(domain), matched(_SESSION, session, "a session id"), network, host, state, mark)
+
+
+_MARK = re.compile(rb"robolink_bridge=([A-Za-z0-9_.-]{1,253});")
+
+
+def mark_data(mark: str) -> bytes:
+    """Return what a bridge adds to the user data of its participant on DDS, where there are no tokens."""
+    return f"robolink_bridge={mark};".encode()
+
+
+def mark_in(user_data: bytes) -> str:
+    """Return the mark of the bridge whose participant has this user data; "" if it is not one."""
+    match = _MARK.search(user_data)
+    return match[1].decode() if match else ""

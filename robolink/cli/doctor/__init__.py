@@ -28,6 +28,7 @@ def doctor(
 ) -> None:
     """Check the settings, the network and the running system; the exit code is 1 if a check fails."""
     from robolink.cli.doctor.checks import CHECKS
+    from robolink.cli.doctor.dds_checks import DDS_CHECKS
     from robolink.cli.doctor.gathering import gather
     from robolink.cli.doctor.graph_checks import GRAPH_CHECKS
     from robolink.cli.doctor.report import sections
@@ -35,7 +36,7 @@ def doctor(
 
     facts = gather()
     # Where the system could not be looked at, one check says so, and the others have nothing to say.
-    checks = CHECKS + (GRAPH_CHECKS[:1] if facts.seen.error else GRAPH_CHECKS)
+    checks = CHECKS + DDS_CHECKS + (GRAPH_CHECKS[:1] if facts.seen.error else GRAPH_CHECKS)
     verdicts = [(check, check.decide(facts)) for check in checks]
     bad = ("error", "warning") if include_warnings else ("error",)
     failed = [check.module for check, verdict in verdicts if verdict.level in bad]

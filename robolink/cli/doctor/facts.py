@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
+from robolink.cli.doctor.dds import Dds
 from robolink.cli.doctor.ports import Holder
 from robolink.networks.port_probe import Port
 from robolink.networks.request import FIRST_PORT
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
 from robolink.transport.reach import Link, Reach
-from robolink.wire import EndpointToken, NodeToken
+from robolink.wire import BridgeToken, EndpointToken, NodeToken
 
 
 class Settings(NamedTuple):
@@ -56,6 +57,8 @@ class Seen(NamedTuple):
     clocks: tuple[ClockOffset, ...] = ()
     links: tuple[Link, ...] = ()
     """Connections to other sessions."""
+    bridges: tuple[BridgeToken, ...] = ()
+    """Bridges to other networks, such as DDS."""
     error: str = ""
     """Reason why the system could not be looked at; empty if it could."""
 
@@ -98,6 +101,8 @@ class Facts(NamedTuple):
     other_domains: Mapping[int, int | None] = {}
     """Number of nodes on each other domain in use; None if they could not be counted."""
     seen: Seen = Seen()
+    dds: Dds = Dds()
+    """Who speaks DDS on this machine."""
     by_multicast: frozenset[str] = frozenset()
     """Ids of the sessions that answer a multicast, as far as that is used."""
     machine: shared_memory.Machine = shared_memory.Machine()

@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, TypeVar
 
+from robolink.cli.doctor import dds
 from robolink.cli.doctor.facts import Facts, Seen, Settings
 from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
@@ -81,6 +82,8 @@ def gather() -> Facts:
         machine=machine,
         memory=_memory(settings, machine, found.mode),
     )
+    if not settings.errors:
+        facts = facts._replace(dds=dds.look(settings.domain))
     if settings.transport == "zenoh":
         facts = _with_ports(facts)
     if config is None:

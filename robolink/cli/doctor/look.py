@@ -5,7 +5,7 @@ from __future__ import annotations
 import collections
 import contextlib
 import queue
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.doctor.facts import ClockOffset, Seen
@@ -14,15 +14,18 @@ from robolink.system import clocks
 from robolink.system.waits import get_within
 from robolink.transport import connect
 from robolink.wire import (
+    BridgeToken,
     DataKey,
     EndpointKind,
     EndpointToken,
     NodeToken,
+    bridge_pattern,
     format_key,
     format_token,
     gid_of,
     graph_pattern,
     pack_attachment,
+    parse_bridge,
     parse_token,
     unpack_attachment,
 )
@@ -86,7 +89,21 @@ def _seen(transport: Transport, domain: int) -> Seen:
         elif isinstance(token, NodeToken):
             others[token.domain] += 1
     clocks = _clocks(transport, tokens)
-    return Seen(transport.session_id, tuple(tokens), tuple(malformed), others, clocks, tuple(transport.links()))
+    return Seen(
+        transport.session_id,
+        tuple(tokens),
+        tuple(malformed),
+        others,
+        clocks,
+        tuple(transport.links()),
+        tuple(_bridges(transport, domain)),
+    )
+
+
+def _bridges(transport: Transport, domain: int) -> Iterator[BridgeToken]:
+    for text in transport.tokens(bridge_pattern(domain)):
+        with contextlib.suppress(WireError):
+            yield parse_bridge(text)
 
 
 def _listed(transport: Transport, domain: int) -> list[str]:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from robolink import Node
 from robolink.cli import doctor
-from robolink.cli.doctor import gathering, graph_checks, look
+from robolink.cli.doctor import dds, gathering, graph_checks, look
 from robolink.cli.doctor.facts import MOST_SHOWN, Facts, Seen
 from robolink.cli.doctor.report import sections
 from robolink.cli.main import main
@@ -58,6 +58,7 @@ def _usual_machine(monkeypatch: pytest.MonkeyPatch) -> None:
         if name.startswith(("ROS_", "RMW_", "ZENOH_", "ROBOLINK_")):
             monkeypatch.delenv(name)
     monkeypatch.setattr(shared_memory, "this_machine", lambda: ROOMY)
+    monkeypatch.setattr(dds, "look", lambda domain: dds.Dds())
 
 
 # --- The command ----------------------------------------------------------------------------------------------------
@@ -85,7 +86,7 @@ def test_a_sound_system_passes(robot: Node, capsys: Captured) -> None:
     assert "WARN  settings        ROBOLINK_TRANSPORT=memory://" in out
     assert "ok    domains         domain 7 has 1 node\n" in out
     assert out.endswith(
-        "\n18 of 20 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/reference/troubleshooting.md\n"
+        "\n19 of 21 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/reference/troubleshooting.md\n"
     )
 
 
@@ -124,7 +125,7 @@ def test_what_is_wrong_fails_and_is_named(robot: Node, capsys: Captured) -> None
     assert "FAIL  topic types     /chatter: /lab/robot publishes std_msgs/msg/String, /lab/robot subscribes to" in out
     assert "FAIL  service types   /lamp: " in out
     assert "WARN  qos             /chatter: " in out
-    failed = "\n2/20 check(s) failed\n\nFailed modules: middleware\n"
+    failed = "\n2/21 check(s) failed\n\nFailed modules: middleware\n"
     assert out.endswith(f"{failed}By what one sees: docs/reference/troubleshooting.md\n")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from robolink.cli.doctor import checks, graph_checks
+from robolink.cli.doctor import checks, dds_checks, graph_checks
 from robolink.cli.doctor.facts import ERROR, LONGEST, OK, UNKNOWN, WARNING, ClockOffset, Facts, Seen, Settings, Verdict
 from robolink.cli.doctor.gathering import read_settings
 from robolink.cli.doctor.ports import Holder
@@ -27,7 +27,9 @@ def only(found: tuple[str, ...]) -> str:
     return one
 
 
-@pytest.mark.parametrize("check", [*checks.CHECKS, *graph_checks.GRAPH_CHECKS], ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "check", [*checks.CHECKS, *dds_checks.DDS_CHECKS, *graph_checks.GRAPH_CHECKS], ids=lambda each: each.name
+)
 def test_no_check_finds_fault_with_an_idle_machine(check: Any) -> None:
     assert check.decide(Facts()).level in (OK, UNKNOWN)
 
