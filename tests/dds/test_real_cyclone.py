@@ -33,6 +33,8 @@ def test_topics_go_to_cyclone_and_back(lab: Lab, way: str) -> None:
             ours.ask("subscription", topic=f"{topic}_back", type_name=type_name)
             ours.ask("publisher", topic=topic, type_name=type_name)
             meet(ours, ours, topic, f"{topic}_back")
+            theirs.wait(f"{topic} hears")
+            theirs.wait(f"{topic} is heard")
             ours.ask("stream", topic=topic, rate=50.0, count=count, size=size)
             came = ours.wait(f"{topic}_back", count)
             assert [each["number"] for each in came] == list(range(1, count + 1))

@@ -80,18 +80,28 @@ def main():
     readers, readable = [], threading.Condition()
 
     class Wakes(Listener):
+        def __init__(self, name):
+            super().__init__()
+            self.name = name
+
         def on_data_available(self, reader):
             with readable:
                 readable.notify()
 
+        def on_subscription_matched(self, reader, status):
+            emit(event=f"{self.name} hears", count=status.current_count)
+
+        def on_publication_matched(self, writer, status):
+            emit(event=f"{self.name} is heard", count=status.current_count)
+
     for name, kind in TOPICS.items():
-        writer = DataWriter(participant, Topic(participant, f"rt/lab/{name}_back", kind, qos=reliable), qos=reliable)
-        topic = Topic(participant, f"rt/lab/{name}", kind, qos=reliable)
-        readers.append((name, DataReader(participant, topic, qos=reliable, listener=Wakes()), writer))
+        back, topic = (Topic(participant, f"rt/lab/{name}{end}", kind, qos=reliable) for end in ("_back", ""))
+        writer = DataWriter(participant, back, qos=reliable, listener=Wakes(name))
+        readers.append((name, DataReader(participant, topic, qos=reliable, listener=Wakes(name)), writer))
     emit(event="ready", at=time.monotonic())
     while True:
         for name, reader, writer in readers:
-            for message in reader.take(10):
+            for message in (each for each in reader.take(10) if isinstance(each, TOPICS[name])):  # not of a goodbye
                 writer.write(message)
                 emit(event=name, at=time.monotonic())
         with readable:
