@@ -46,7 +46,7 @@ def free_dds_domain() -> Iterator[int]:
 
 
 def skip_without_dds() -> None:
-    if importlib.util.find_spec("robolink.dds.transport") is None:
+    if importlib.util.find_spec("robolink.dds.network") is None:
         pytest.skip("there is no --network dds yet")
 
 
@@ -77,6 +77,8 @@ class Lab(NamedTuple):
         return Peer([*ROBOLINK, "run"], name, environment(self.domain), self.folder)
 
     def bridge(self) -> Command:
+        if importlib.util.find_spec("robolink.cli.bridge") is None:
+            pytest.skip("there is no robolink bridge yet")
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir(exist_ok=True)
         return Command(self.domain, "bridge", "dds", folder=elsewhere)

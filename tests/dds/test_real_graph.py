@@ -33,8 +33,9 @@ def seen(peer: Peer, topic: str) -> tuple[list[Any], list[Any]]:
     return publishers, subscriptions
 
 
-def sees(peer: Peer, topic: str, count: int) -> bool:
-    return all(len(ends) == count for ends in seen(peer, topic))
+def sees(peer: Peer, topic: str, nodes: list[str]) -> bool:
+    """Whether publishers and subscriptions are those of these nodes; DDS tells which node has an endpoint later."""
+    return all([end["node"] for end in ends] == nodes for ends in seen(peer, topic))
 
 
 def sees_both_nodes(peer: Peer) -> bool:
@@ -56,7 +57,7 @@ def test_each_sees_the_other_s_endpoints_with_type_hash_and_qos(
         own = f"{topic}_of_{peer.name}"
         peer.ask("publisher", topic=own, type_name="std_msgs/msg/String", **qos)
         peer.ask("subscription", topic=own, type_name="std_msgs/msg/String", **qos)
-        until(functools.partial(sees, other, own, 1), f"{other.name} sees both")
+        until(functools.partial(sees, other, own, [f"/lab/{peer.name}"]), f"{other.name} sees both")
         expected = {
             "node": f"/lab/{peer.name}",
             "type": "std_msgs/msg/String",
@@ -71,7 +72,7 @@ def test_each_sees_the_other_s_endpoints_with_type_hash_and_qos(
             assert {name: end[name] for name in expected} == expected
         assert seen(other, own)[0][0]["lifespan"] == (int(qos["lifespan"] * 1e9) if "lifespan" in qos else FOREVER)
         peer.ask("forget", topic=own)
-        until(functools.partial(sees, other, own, 0), f"{other.name} sees that both are gone")
+        until(functools.partial(sees, other, own, []), f"{other.name} sees that both are gone")
 
 
 def test_each_sees_all_nodes_and_what_they_have(scene: Scene) -> None:
