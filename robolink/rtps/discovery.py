@@ -41,6 +41,7 @@ MOST_ENDPOINTS = 20_000
 LEASE = 20.0
 """Seconds after which others take us for gone: as Fast DDS has it."""
 
+_SHORTEST_LEASE = 1.0
 _SEARCH_EVERY, _BURST_EVERY, _BURST = 1.0, 0.1, 5
 _RENEW_EVERY = 3.0
 """Seconds between announcements to those who know us: some six in a lease, as Fast DDS has it."""
@@ -220,7 +221,7 @@ class Discovery:
         peer = _peer(said, metatraffic)
         self.peers[said.prefix] = PeerState(now, peer, metatraffic, default, head)
         self._at[metatraffic] = said.prefix
-        self.due = min(self.due, now + said.lease)
+        self.due = min(self.due, now + peer.lease)
         self._on_peer(peer, True)
         # It has to know us before it can use what follows.
         self._send(metatraffic, [self._announcement], False)
@@ -317,18 +318,15 @@ class Discovery:
         if remote is None:
             return
         endpoint = remote.endpoint
-        self.peers_endpoints(guid).discard(bytes(guid))
+        state = self.peers.get(guid[: ids.PREFIX_BYTES])
+        if state is not None:
+            state.endpoints.discard(endpoint.guid)
         key = (endpoint.is_writer, endpoint.topic, endpoint.type_name)
         of_topic = self._by_topic[key]
         del of_topic[endpoint.guid]
         if not of_topic:
             del self._by_topic[key]
         self._on_remote(remote, False)
-
-    def peers_endpoints(self, guid: bytes) -> set[bytes]:
-        """Return the GUIDs of all endpoints of an endpoint's participant."""
-        state = self.peers.get(guid[: ids.PREFIX_BYTES])
-        return set() if state is None else state.endpoints
 
 
 def gone(data: Data) -> Gone | None:
@@ -352,4 +350,6 @@ def greeting(vendor: bytes) -> int:
 
 
 def _peer(said: ParticipantData, address: Locator) -> Peer:
-    return Peer(said.prefix, said.vendor, said.name, said.user_data, said.lease, address)
+    # A lease of nothing would let it come and go with each of its announcements.
+    lease = max(said.lease, _SHORTEST_LEASE)
+    return Peer(said.prefix, said.vendor, said.name, said.user_data, lease, address)

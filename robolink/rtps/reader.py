@@ -202,6 +202,8 @@ class StatefulReader:
 
     def _add(self, proxy: WriterProxy, parts: _Parts, fragments: DataFrag) -> None:
         size, payload = parts.fragment_size, fragments.payload
+        if proxy.bytes > MOST_WAITING_BYTES and fragments.number != proxy.next:
+            return
         # The last in the row begins inside the sample: `parse` has seen to it.
         for at in range(0, len(payload), size):
             fragment = fragments.first + at // size
@@ -249,7 +251,8 @@ class StatefulReader:
             return
         if first <= proxy.next < base:
             self._skip(proxy, base)
-        end = proxy.next + MOST_WAITING  # it may claim 2^63 of them
+        # It may claim 2^63 of them; what cannot be requested yet need not be remembered.
+        end = proxy.next + MOST_IN_SET
         for number in (*range(max(first, proxy.next), min(base, end)), *others):
             if proxy.next <= number < end and number not in proxy.waiting:
                 self._forget(proxy, number)

@@ -261,7 +261,7 @@ class StatefulWriter:
             self._send(address, [head, stamp, data, beats], False)
             return
         total = -(-len(payload) // FRAGMENT)
-        chosen = range(1, total + 1) if fragments is None else [n for n in fragments if n <= total]
+        chosen = range(1, total + 1) if fragments is None else [n for n in fragments if 0 < n <= total]
         last = chosen[-1] if chosen else 0
         for fragment in chosen:
             pieces = encode_data_frag(
@@ -338,6 +338,8 @@ class StatefulWriter:
         if proxy is None or not proxy.reliable:
             return
         change = self._history.get(number)
+        if number > self.last:
+            return
         if change is None or number < proxy.first:
             self._send_gap(proxy, [number])
         elif missing:

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
-from robolink.rtps import Qos, ids
+from robolink.rtps import Info, Qos, ids
 from robolink.rtps.core import LocalReader, LocalWriter
-from robolink.rtps.submessages import AckNack, Data, DataFrag, Gap, Heartbeat, NackFrag
-from robolink.rtps.writer import FRAGMENT
+from robolink.rtps.parameters import Locator
+from robolink.rtps.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    NackFrag,
+    encode_data_frag,
+    encode_gap,
+    encode_header,
+)
+from robolink.rtps.writer import FRAGMENT, MOST_KEPT
+from tests.support.big_endian import big_endian
 from tests.support.rtps_network import TYPE, Faults, Member, Network, numbers, sample
 
 LATCHED = Qos(transient_local=True, depth=1)
@@ -254,3 +268,197 @@ def test_a_reader_that_is_gone_without_a_word_is_reminded_ever_more_rarely() -> 
     network.sent.clear()
     network.run(5)
     assert network.is_quiet
+
+
+@pytest.mark.parametrize("who", [0, 1])
+def test_a_big_endian_participant_is_understood(who: int) -> None:
+    network = Network()
+    members = pair(network)
+    members[who].rewrite = big_endian
+    a, b = members
+    infos: list[Info] = []
+    a.core.add_reader(network.now, "rt/answer", TYPE, ALL, lambda _, info: infos.append(info))
+    question, answer = a.writer("rt/question", ALL), b.writer("rt/answer", ALL)
+    latched = a.writer("rt/latched", LATCHED)
+    a.put(latched, sample(1, 5 * FRAGMENT))
+    a.put(latched, sample(2, 5 * FRAGMENT))
+    _, got = b.reader("rt/question", ALL)
+    network.run(1)
+    _, late = b.reader("rt/latched", LATCHED)
+    network.faults = Faults(every=5)
+    for number in range(50):
+        a.put(question, sample(number))
+        b.put(answer, sample(number), (question.guid, number + (1 << 33)))
+        network.run(0.01)
+    network.run(3)
+    assert numbers(got) == list(range(50))
+    assert numbers(late) == [2]
+    assert [info.related for info in infos] == [(question.guid, number + (1 << 33)) for number in range(50)]
+    assert {info.timestamp for info in infos} == {1_700_000_000_123_456_789}
+    network.faults = Faults()
+    members[who].leave()
+    network.run(0.1)
+    assert not members[1 - who].core.peers()
+
+
+@pytest.mark.parametrize("size", [13, 14, 15, 16, FRAGMENT + 1, FRAGMENT + 2])
+def test_a_payload_arrives_with_at_most_three_bytes_more(size: int) -> None:
+    network = Network()
+    a, _, writer, _, got = met(network)
+    payload = (b"\0\1\0\0" + bytes(range(256)) * 300)[:size]
+    a.put(writer, payload)
+    network.run(1)
+    assert got[0][:size] == payload
+    assert got[0][size:] == bytes(-size % 4 if size <= FRAGMENT else 0)
+
+
+def test_a_writer_that_keeps_all_has_a_cap_and_the_oldest_are_skipped() -> None:
+    network = Network()
+    a, _, writer, _, got = met(network)
+    network.faults = Faults(is_lost=lambda raw, address: True)
+    for number in range(MOST_KEPT + 100):
+        a.put(writer, sample(number))
+    assert (len(writer._history), writer.lost) == (MOST_KEPT, 100)
+    network.faults = Faults()
+    network.run(20, until=lambda: len(got) == MOST_KEPT)
+    assert numbers(got) == list(range(100, MOST_KEPT + 100))
+    network.run(1)
+    assert writer._history == {}
+
+
+def test_a_writer_that_keeps_all_keeps_no_more_bytes_than_its_cap(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robolink.rtps.writer.MOST_KEPT_BYTES", 1_000_000)
+    network = Network()
+    a, _, writer, _, got = met(network)
+    network.faults = Faults(is_lost=lambda raw, address: True)
+    for number in range(20):
+        a.put(writer, sample(number, 100_000))
+    assert [change.number for change in writer._history.values()] == list(range(11, 21))
+    network.faults = Faults()
+    network.run(3)
+    assert numbers(got) == list(range(10, 20))
+
+
+def test_what_waits_for_an_earlier_sample_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robolink.rtps.reader.MOST_WAITING", 50)
+    monkeypatch.setattr("robolink.rtps.reader.MOST_WAITING_BYTES", 300_000)
+    network = Network()
+    a, _b, writer, reader, got = met(network)
+    lost = sample(0)
+    network.faults = Faults(is_lost=lambda raw, address: lost in raw)
+    for number in range(200):
+        a.put(writer, sample(number, 12 if number % 5 else 12 + 100_000 * (number > 0)))
+        network.run(0.001)
+    proxy = reader.writers[writer.guid]
+    network.run(1)
+    assert not got
+    assert len(proxy.waiting) <= 50
+    assert proxy.bytes <= 400_000
+    network.faults = Faults()
+    network.run(10, until=lambda: len(got) == 200)
+    assert numbers(got) == list(range(200))
+    assert proxy.bytes == 0
+
+
+def test_an_acknowledgement_is_requested_before_much_is_under_way() -> None:
+    network = Network()
+    a, _b, writer, _reader, _got = met(network)
+    for number in range(100):  # at once, long before a reminder is due
+        a.put(writer, sample(number))
+    network.run(0.01)
+    assert len(writer._history) < 32
+    network.sent.clear()
+    for number in range(30):
+        a.put(writer, sample(number))
+        network.run(0.0005)
+    assert len(network.submessages(AckNack)) <= 2  # not one for each
+
+
+def test_a_lost_sample_is_requested_when_the_next_one_comes() -> None:
+    network = Network()
+    a, _, writer, _, got = met(network)
+    lost = sample(1)
+    network.faults = Faults(is_lost=lambda raw, address: lost in raw)
+    a.put(writer, sample(0))
+    a.put(writer, lost)
+    network.faults = Faults()
+    a.put(writer, sample(2))
+    network.run(0.002)  # the heartbeat of a Fast DDS may be 3 s away
+    assert numbers(got) == [0, 1, 2]
+
+
+def test_a_lost_fragment_is_requested_when_the_last_one_comes() -> None:
+    network = Network()
+    a, _, writer, _, got = met(network)
+    seen: list[bytes] = []
+
+    def third(raw: bytes, address: Locator) -> bool:
+        seen.append(raw)
+        return len(seen) == 3
+
+    network.faults = Faults(is_lost=third)
+    a.put(writer, sample(0, 9 * FRAGMENT))
+    network.run(0.002)
+    assert numbers(got) == [0]
+    assert [nack.missing for nack in network.submessages(NackFrag)] == [[3]]
+
+
+def test_a_gap_that_claims_everything_costs_nothing() -> None:
+    network = Network()
+    a, b, writer, reader, _got = met(network)
+    head = encode_header(a.core.prefix)
+    for first, base in ((5, 1 << 61), (2, 1 << 61), (1, 300)):
+        gap = encode_gap(reader.entity, writer.entity, first, base)
+        b.core.receive(network.now, head + gap, a.default)
+        assert len(reader.writers[writer.guid].waiting) <= 256
+    assert reader.writers[writer.guid].next <= 1 << 61
+
+
+def test_a_sample_that_claims_to_be_huge_costs_what_came_of_it() -> None:
+    network = Network()
+    a, b, writer, reader, _got = met(network)
+    head = encode_header(a.core.prefix)
+    for number in range(1, 30):
+        piece = encode_data_frag(reader.entity, writer.entity, number, 1, 1024, bytes(5000))
+        raw = bytearray(head + b"".join(piece))
+        raw[20 + 32 : 20 + 36] = (900_000_000).to_bytes(4, "little")
+        b.core.receive(network.now, bytes(raw), a.default)
+    proxy = reader.writers[writer.guid]
+    # Of the one that is due; what the others claim is more than may wait.
+    assert (proxy.bytes, [*proxy.parts]) == (1024, [1])
+
+
+def test_nonsense_raises_nothing_and_fills_nothing() -> None:
+    network = Network()
+    network.faults = Faults(every=9)
+    a, b, writer, _reader, _got = met(network)
+    latched = a.writer("rt/latched", LATCHED)
+    a.put(latched, sample(1, 3 * FRAGMENT))
+    b.reader("rt/latched", LATCHED)
+    for number in range(30):
+        a.put(writer, sample(number, 1000), (bytes(16), 1))
+        network.run(0.01)
+    a.core.remove(network.now, a.writer("rt/gone"))
+    network.run(1)
+    a.core.goodbye()
+    recorded = [raw for _, raw, _ in network.sent if raw[8:20] == a.core.prefix]
+    dice = random.Random(1)
+    for count in range(20_000):
+        raw = bytearray(dice.choice(recorded))
+        for _ in range(dice.randint(1, 6)):
+            at = dice.randrange(20 if dice.random() < 0.9 else 0, min(len(raw), 200))
+            raw[at] = dice.choice((0, 1, 0x7F, 0x80, 0xFF, dice.randrange(256)))
+        if dice.random() < 0.2:
+            del raw[dice.randrange(len(raw)) :]
+        b.core.receive(network.now, bytes(raw), a.default)
+        b.call()
+        if count % 100 == 0:
+            network.run(0.01)
+    assert b.core.nonsense > 1000
+    c, _d = pair(network)
+    _, heard = b.reader("rt/new", ALL)
+    new = c.writer("rt/new", ALL)
+    network.run(3)
+    c.put(new, sample(7))
+    network.run(1)
+    assert numbers(heard) == [7]

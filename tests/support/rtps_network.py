@@ -60,6 +60,9 @@ class Member:
         self.peers: list[tuple[bytes, bool]] = []
         self.found: list[tuple[Endpoint, bool]] = []
         self.is_up = True
+        self.rewrite: Callable[[bytes], bytes] = bytes
+        """What becomes of each datagram that it sends."""
+        self.ticks = 0
         me = ParticipantData(prefix, vendor, (self.metatraffic,), (self.default,), lease, "/", b"enclave=/;", 0)
         self.core = Core(
             me,
@@ -74,7 +77,7 @@ class Member:
 
     def _send(self, address: Locator, buffers: Sequence[Buffer], is_paced: bool) -> None:
         if self.is_up:
-            self.network.carry(b"".join(buffers), address, self.default)
+            self.network.carry(self.rewrite(b"".join(buffers)), address, self.default)
 
     def writer(self, topic: str = "rt/a", qos: Qos = USUAL, type_name: str = TYPE) -> LocalWriter:
         """Make a writer."""
@@ -95,9 +98,9 @@ class Member:
 
         return self.core.add_reader(self.network.now, topic, type_name, qos, sink, accepts=accepts), got
 
-    def put(self, writer: LocalWriter, payload: bytes) -> int:
+    def put(self, writer: LocalWriter, payload: bytes, related: tuple[bytes, int] | None = None) -> int:
         """Send a sample."""
-        return self.core.put(self.network.now, writer, payload)
+        return self.core.put(self.network.now, writer, payload, related, 1_700_000_000_123_456_789)
 
     def leave(self) -> None:
         """Say goodbye."""
@@ -173,6 +176,7 @@ class Network:
             else:
                 for member in self.members:
                     if member.core.due <= at:
+                        member.ticks += 1
                         member.core.tick(at)
             for member in self.members:
                 member.call()

@@ -1,0 +1,278 @@
+"""Who is met, for how long, and what is known of whose endpoints, in virtual time."""
+
+from __future__ import annotations
+
+import pytest
+
+from robolink.rtps import Qos, ids
+from robolink.rtps.discovery import MOST_PEERS
+from robolink.rtps.submessages import AckNack, Data, Heartbeat, encode_data, encode_header, parse
+from tests.support.rtps_network import HOST, Faults, Network, numbers, sample
+
+
+def announcements(network: Network) -> int:
+    return sum(
+        isinstance(each, Data) and each.writer == ids.SPDP_WRITER
+        for _, raw, _ in network.sent
+        for each in parse(raw).submessages
+    )
+
+
+@pytest.mark.parametrize("vendor", ["ours", "fastdds", "cyclone"])
+def test_participants_and_their_endpoints_are_known_within_a_tenth_of_a_second(vendor: str) -> None:
+    network = Network()
+    members = [network.join(vendor) for _ in range(10)]
+    for member in members:
+        for number in range(10):
+            member.writer(f"rt/w{number}")
+            member.reader(f"rt/r{number}")
+    assert network.run(0.1, until=lambda: all(len(member.core.endpoints()) == 180 for member in members))
+    assert all(member.core.is_settled() for member in members)
+
+
+def test_a_reader_greets_each_vendor_as_that_one_answers_at_once() -> None:
+    # Fast DDS answers only base 0 at once, else its next heartbeat comes after 3 s; Cyclone takes 0 for malformed.
+    for vendor, base in (("fastdds", 0), ("cyclone", 1)):
+        network = Network()
+        us, other = network.join(), network.join(vendor)
+        other.writer()
+        us.reader()
+        network.run(1)
+        greetings = [
+            each
+            for _, raw, _ in network.sent
+            if raw[8:20] == us.core.prefix
+            for each in parse(raw).submessages
+            if isinstance(each, AckNack) and not each.missing and not each.final
+        ]
+        assert len({each.writer for each in greetings}) == 3  # publications, subscriptions, the topic
+        assert {each.base for each in greetings} == {base}
+
+
+def _has(raw: bytes, kind: type) -> bool:
+    return any(isinstance(each, kind) for each in parse(raw).submessages)
+
+
+def test_a_writer_that_never_answers_is_asked_ever_more_rarely() -> None:
+    network = Network()
+    us, other = network.join(), network.join()
+    other.writer()
+    us.reader()
+    network.faults = Faults(is_lost=lambda raw, address: _has(raw, Heartbeat) and address == us.default)
+    network.run(120)
+    asked = [each for each in network.submessages(AckNack) if each.writer[3] == ids.KEYLESS_WRITER]
+    assert 8 < len(asked) < 16
+
+
+def test_a_participant_that_did_not_listen_yet_is_told_again_when_it_announces_itself() -> None:
+    network = Network()
+    us = network.join()
+    network.run(2)
+    other = network.join("fastdds")
+    deaf_until = network.now + 0.05
+    network.faults = Faults(is_lost=lambda raw, address: address == other.metatraffic and network.now < deaf_until)
+    assert network.run(0.3, until=lambda: bool(other.core.peers()) and bool(us.core.peers()))
+
+
+def test_samples_that_come_before_their_writer_is_known_are_not_lost() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    network.run(2)
+    network.faults = Faults(is_lost=lambda raw, address: ids.PUBLICATIONS_WRITER in raw)
+    writer = a.writer(qos=Qos(depth=0))
+    _, got = b.reader(qos=Qos(depth=0))
+    network.run(1)
+    assert writer.readers  # it knows the reader, which does not know it
+    for number in range(5):
+        a.put(writer, sample(number))
+    network.run(1)
+    assert not got
+    network.faults = Faults()
+    network.run(3)
+    assert numbers(got) == [0, 1, 2, 3, 4]
+
+
+def test_endpoints_that_went_do_not_come_back_by_a_repair() -> None:
+    for seed in range(20):
+        network = Network(seed)
+        a, b = network.join(), network.join()
+        network.faults = Faults(loss=0.3, jitter=0.01)
+        network.run(1)
+        kept = []
+        for number in range(20):
+            writer = a.writer(f"rt/{number}")
+            network.run(0.005)
+            if number % 2:
+                a.core.remove(network.now, writer)
+            else:
+                kept.append(writer.guid)
+        network.run(20)
+        assert sorted(endpoint.guid for endpoint in b.core.endpoints()) == sorted(kept)
+        came_and_went = {endpoint.guid: came for endpoint, came in b.found}
+        assert [guid for guid, came in came_and_went.items() if came] == kept
+
+
+def test_what_is_announced_of_endpoints_that_went_is_not_kept() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    network.run(1)
+    for number in range(50):
+        a.core.remove(network.now, a.writer(f"rt/{number}"))
+        network.run(0.01)
+    network.run(1)
+    assert a.core._discovery.writers[True]._history == {}
+    assert not b.core.endpoints()
+
+
+def test_a_reader_and_a_writer_that_close_are_not_matched_any_more() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    writers, readers = [a.writer() for _ in range(3)], [b.reader()[0] for _ in range(3)]
+    network.run(1)
+    assert [len(writer.readers) for writer in writers] == [3, 3, 3]
+    a.core.remove(network.now, writers[0])
+    b.core.remove(network.now, readers[0])
+    network.run(1)
+    assert [len(reader.writers) for reader in readers[1:]] == [2, 2]
+    assert [len(writer.readers) for writer in writers[1:]] == [2, 2]
+    network.sent.clear()
+    network.run(10)
+    assert network.is_quiet
+    a.core.remove(network.now, writers[0])  # the second time it is nothing
+
+
+def test_a_writer_whose_reader_closed_without_acknowledging_keeps_nothing_for_it() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    writer = a.writer(qos=Qos(depth=0))
+    reader, _ = b.reader()
+    network.run(1)
+    network.faults = Faults(is_lost=lambda raw, address: address == b.default)
+    for number in range(5):
+        a.put(writer, sample(number))
+    assert len(writer._history) == 5
+    b.core.remove(network.now, reader)
+    network.run(1)
+    assert writer._history == {}
+
+
+def test_a_participant_that_says_goodbye_is_gone_at_once() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    writer = a.writer()
+    b.reader()
+    network.run(1)
+    b.leave()
+    network.run(0.01)
+    assert (a.core.peers(), a.core.endpoints(), writer.readers) == ([], [], {})
+    assert a.peers == [(b.core.prefix, True), (b.core.prefix, False)]
+    assert [came for _, came in a.found] == [True, False]
+
+
+@pytest.mark.parametrize("lease", [2.0, 20.0])
+def test_a_participant_that_is_killed_is_gone_after_its_lease(lease: float) -> None:
+    network = Network()
+    a, b = network.join(), network.join(lease=lease)
+    b.writer()
+    network.run(1)
+    b.kill()
+    network.run(lease - 1.1)
+    assert a.core.peers()
+    network.run(1.2)
+    assert (a.core.peers(), a.core.endpoints()) == ([], [])
+
+
+def test_leases_do_not_end_while_anything_comes() -> None:
+    network = Network()
+    a, b = network.join(lease=2), network.join(lease=4)
+    network.run(60)
+    # Announcements come every 3 s: those of a shorter lease do not suffice, but that is what it says of itself.
+    assert [came for _, came in a.peers] == [True]
+    assert [came for _, came in b.peers][:1] == [True]
+
+
+def test_a_participant_that_was_restarted_at_the_same_port_replaces_the_one_before() -> None:
+    network = Network()
+    a, b = network.join(), network.join("fastdds")
+    writer = a.writer(qos=Qos(depth=0))
+    b.reader()
+    network.run(1)
+    b.kill()
+    a.put(writer, sample(0))
+    network.run(0.5)
+    c = network.join("fastdds", index=1)
+    _, got = c.reader()
+    assert network.run(0.5, until=lambda: [peer.prefix for peer in a.core.peers()] == [c.core.prefix])
+    network.run(0.5)
+    a.put(writer, sample(1))
+    network.run(0.5)
+    assert numbers(got) == [1]
+    assert a.peers == [(b.core.prefix, True), (b.core.prefix, False), (c.core.prefix, True)]
+
+
+def test_participants_of_one_cyclone_process_share_a_port() -> None:
+    network = Network()
+    a, b = network.join(), network.join("cyclone")
+    c = network.join("cyclone", index=1)
+    network.run(5)
+    assert {peer.prefix for peer in a.core.peers()} == {b.core.prefix, c.core.prefix}
+
+
+def test_another_domain_is_not_met() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    b.core._discovery._announcement = b.core._discovery._announcement.replace(
+        b"\x0f\0\4\0" + bytes(4), b"\x0f\0\4\0\1\0\0\0"
+    )
+    network.run(2)
+    assert not a.core.peers()
+
+
+def test_more_participants_than_allowed_are_not_met() -> None:
+    network = Network()
+    us, other = network.join(), network.join()
+    announcement = other.core._discovery._announcement
+    for number in range(MOST_PEERS + 50):
+        prefix = ids.VENDOR_ROBOLINK + number.to_bytes(10, "big")
+        raw = announcement.replace(other.core.prefix, prefix)
+        port = other.metatraffic[1].to_bytes(4, "little")
+        us.core.receive(network.now, raw.replace(port, (20_000 + number).to_bytes(4, "little")), (HOST, 9))
+    assert len(us.core.peers()) == MOST_PEERS
+    assert us.core._discovery.refused == 50
+
+
+def test_an_idle_participant_sends_and_wakes_up_a_few_times_a_second() -> None:
+    network = Network()
+    members = [network.join() for _ in range(3)]
+    for member in members:
+        member.writer("rt/a")
+        member.reader("rt/a")
+    network.run(5)
+    network.sent.clear()
+    before = {member: member.ticks for member in members}
+    network.run(60)
+    assert network.is_quiet
+    assert all(member.ticks - before[member] <= 60 + 20 + 20 for member in members)
+    # A search of 31 ports a second, without those who know us; and each of two peers every 3 s.
+    assert announcements(network) <= 3 * (61 * 29 + 2 * 21)
+
+
+def test_a_participant_that_hears_of_itself_does_not_meet_itself() -> None:
+    network = Network()
+    us = network.join()
+    us.core.receive(network.now, us.core._discovery._announcement, us.default)
+    assert not us.core.peers()
+
+
+def test_nothing_of_a_stranger_is_taken_before_it_has_announced_itself() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    reader, got = b.reader()
+    network.faults = Faults(is_lost=lambda raw, address: True)
+    a.writer()
+    network.run(1)
+    raw = encode_header(a.core.prefix) + encode_data(ids.UNKNOWN_ENTITY, b"\0\0\1\3", 1, sample(1))
+    b.core.receive(network.now, raw, a.default)
+    b.call()
+    assert not got
+    assert not reader.writers
