@@ -77,6 +77,7 @@ REGISTRIES = (
     "robolink/compat/hooks.py",
     "robolink/compat/names.py",
     "robolink/extensions/optional.py",
+    "robolink/networks/kinds.py",
     "robolink/sim/worldfile.py",
 )
 """Files whose tables name modules of annexes; rows without their module are not there."""

@@ -165,7 +165,7 @@ def root(
         str,
         typer.Option(
             metavar="NET",
-            help="Network to use: localhost, lan, off, HOST[:PORT], tls/HOST, a name in networks.yaml, or a file.",
+            help="Network to use: localhost, lan, off, dds, HOST[:PORT], tls/HOST, a name in networks.yaml, or a file.",
         ),
     ] = "",
 ) -> None:

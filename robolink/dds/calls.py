@@ -73,7 +73,7 @@ class Call:
         self.close()
 
     def close(self) -> None:
-        """Give up: nothing comes any more. Safe to call twice."""
+        """Abandon the call: nothing comes any more. Safe to call twice."""
         with self._lock:
             self._is_open = False
             close_gate(self._gate)

@@ -54,7 +54,7 @@ class OtherNodes:
         """Global id of each endpoint that has a token, by its GUID; read by other threads."""
         self.peers: dict[bytes, Peer] = {}
         self.endpoints: dict[bytes, Endpoint] = {}
-        self.told: set[bytes] = set()
+        self.reported: set[bytes] = set()
         """Prefixes of the participants that have told their nodes."""
         self._known: dict[bytes, _Known] = {}
         self._requests: dict[Pair, set[bytes]] = {}
@@ -67,7 +67,7 @@ class OtherNodes:
     @property
     def is_complete(self) -> bool:
         """True if each participant of ROS 2 has told its nodes."""
-        return all(prefix in self.told for prefix, peer in [*self.peers.items()] if enclave_in(peer.user_data))
+        return all(prefix in self.reported for prefix, peer in [*self.peers.items()] if enclave_in(peer.user_data))
 
     # What participants tell
 
@@ -82,7 +82,7 @@ class OtherNodes:
         self.peers.pop(peer.prefix, None)
         for table in (self._owners, self._nodes):
             table.pop(peer.prefix, None)
-        self.told.discard(peer.prefix)
+        self.reported.discard(peer.prefix)
 
     def on_endpoint(self, endpoint: Endpoint, came: bool) -> None:
         """Note an endpoint of another participant."""
@@ -113,7 +113,7 @@ class OtherNodes:
         prefix = entities.guid[:12]
         if prefix not in self.peers:  # it has gone meanwhile
             return
-        self.told.add(prefix)
+        self.reported.add(prefix)
         left, nodes = self._nodes.get(prefix, {}), dict[tuple[str, str, int], _Node]()
         owners, namesakes = dict[bytes, _Node](), Counter[tuple[str, str]]()
         for each in entities.nodes:
@@ -204,8 +204,8 @@ class OtherNodes:
         return NodeToken(self._domain, prefix.hex(), "0", "/", "/", BARE_NODE)
 
     def _hash(self, known: _Known) -> str:
-        told = NO_HASH if known.meaning.role is Role.REQUEST else hash_in(known.endpoint.user_data)
-        return self._hashes.of(known.meaning.type_name) if told == NO_HASH else told
+        announced = NO_HASH if known.meaning.role is Role.REQUEST else hash_in(known.endpoint.user_data)
+        return self._hashes.of(known.meaning.type_name) if announced == NO_HASH else announced
 
 
 def _kind(role: Role, is_writer: bool) -> EndpointKind:

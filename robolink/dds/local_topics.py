@@ -28,7 +28,7 @@ class LocalTopic:
         self._latches: tuple[Retaining, ...] = ()
 
     def add_latch(self, qos: QoSProfile) -> Retaining | None:
-        """Return what a publisher of this profile retains its samples in; None if it does not."""
+        """Return the latch of a publisher of this profile; None if it retains nothing."""
         if qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
             return None
         latch = Retaining(latched_depth(qos))

@@ -20,7 +20,7 @@ _ENCLAVE = re.compile(rb"(?:^|;)enclave=([^;\0]{1,255});")
 
 
 class Role(Enum):
-    """What a DDS topic carries: messages of a ROS topic, or the requests or the replies of a service."""
+    """Content of a DDS topic: messages of a ROS topic, or the requests or the replies of a service."""
 
     TOPIC = "rt"
     REQUEST = "rq"
@@ -60,7 +60,7 @@ def dds_type(role: Role, type_name: str) -> str:
 
 
 def ros_name(topic: str, type_name: str) -> RosName | None:
-    """Return what a DDS topic and its type stand for; None for what is not of ROS 2.
+    """Return the name that a DDS topic and its type stand for; None for what is not of ROS 2.
 
     >>> ros_name("rt/chatter", "std_msgs::msg::dds_::String_").name
     '/chatter'

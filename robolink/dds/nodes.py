@@ -28,7 +28,7 @@ class OwnNodes:
         self._numbers = itertools.count()
         self._nodes: dict[int, NodeToken] = {}
         self._endpoints: dict[int, tuple[EndpointToken, Guids]] = {}
-        self._told = b""
+        self._written = b""
         worker.post_idle(self._tell)  # that there are none is news too: others wait for it
 
     def add_node(self, token: NodeToken) -> int:
@@ -67,8 +67,8 @@ class OwnNodes:
             by_node.setdefault((token.session, token.node_id), []).append(guids)
         listed = tuple(_entities(node, by_node.get((node.session, node.node_id), ())) for node in nodes)
         message = encode(ParticipantEntities(self._guid, listed))
-        if message != self._told:
-            self._told = message
+        if message != self._written:
+            self._written = message
             self._write(message)
 
 

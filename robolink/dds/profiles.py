@@ -14,7 +14,7 @@ _KEEP_ALL = 0
 
 
 def announced(profile: QoSProfile) -> Qos:
-    """Return what an endpoint of this profile offers or requests on DDS, with nothing left to the system."""
+    """Return the QoS that an endpoint of this profile announces on DDS, with nothing left to the system."""
     full = resolved(profile)
     return Qos(
         reliable=full.reliability is ReliabilityPolicy.RELIABLE,

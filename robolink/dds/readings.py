@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ from robolink.rtps import Endpoint, Info, Qos
 from robolink.system import clocks, heap
 from robolink.system.waits import fork_lock
 from robolink.transport.base import Sink
-from robolink.transport.history import latched_depth
+from robolink.transport.history import Latch, latched_depth
 from robolink.wire import NO_HASH, format_qos, pack_attachment
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ class Reading:
         self._topics, self._gate = topics, gate
         self._lock = fork_lock()
         self._requested, self._depth = announced(qos), latched_depth(qos)
-        self._held: dict[bytes, deque[tuple[bytes, bytes]]] = {}
+        self._held: dict[bytes, Latch[tuple[bytes, bytes]]] = {}
         self._lenient: dict[bool, Reader] = {}
         """Readers of the writers that offer less, by whether these are reliable."""
         self._reader = self._make(self._requested, self._has_hash)
@@ -55,8 +54,8 @@ class Reading:
 
     def _has_hash(self, writer: Endpoint) -> bool:
         """Return whether a writer has the type of this hash; one that does not tell it is taken at its word."""
-        told = hash_in(writer.user_data)
-        return NO_HASH in (told, self.stream.type_hash) or told == self.stream.type_hash
+        announced_hash = hash_in(writer.user_data)
+        return NO_HASH in (announced_hash, self.stream.type_hash) or announced_hash == self.stream.type_hash
 
     @property
     def is_free(self) -> bool:
@@ -109,7 +108,7 @@ class Reading:
             if (gate := self._gate) is not None:
                 gate(pair)
             elif self._requested.transient_local and (writer in self._held or len(self._held) < _MOST_HELD):
-                self._held.setdefault(writer, deque(maxlen=self._depth)).append(pair)
+                self._held.setdefault(writer, Latch(self._depth)).retain(pair)
 
     def feed(self, gate: Sink) -> None:
         """Feed a sink from now on; with TRANSIENT_LOCAL first with what was held for it."""
@@ -117,8 +116,8 @@ class Reading:
             self._read_anew()
         with self._lock:
             held, self._held = self._held, {}
-            for pairs in held.values():
-                for pair in pairs:
+            for latch in held.values():
+                for pair in latch.last():
                     gate(pair)
             self._gate = gate
 

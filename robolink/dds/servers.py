@@ -27,7 +27,7 @@ _NOBODY = bytes(16)
 
 
 class Identity(NamedTuple):
-    """What a reply names: whom it answers, and which request."""
+    """Identity that a reply names: whom it answers, and which request."""
 
     client: bytes
     """GUID of the reader for which the reply is meant; of the writer of the request if that did not name one."""
@@ -37,7 +37,7 @@ class Identity(NamedTuple):
 
 
 def identity_of(info: Info) -> Identity:
-    """Return what a reply to this request names.
+    """Return the identity that a reply to this request names.
 
     rmw_fastrtps's clients put the GUID of the reader of their replies in the request's related identity.
     """

@@ -52,7 +52,7 @@ class Tokens:
         return watch
 
     def forget(self, watch: Watch) -> None:
-        """Tell a watch nothing more."""
+        """Forget a watch, which is called no more."""
         with self._lock:
             self._watches = tuple(each for each in self._watches if each is not watch)
 
@@ -75,7 +75,7 @@ class Watch:
         self._on_change: OnChange | None = on_change
 
     def tell(self, token: str, alive: bool) -> None:
-        """Tell of a change, unless the watch has been closed meanwhile."""
+        """Report a change, unless the watch has been closed meanwhile."""
         if (on_change := self._on_change) is not None:
             on_change(token, alive)
 

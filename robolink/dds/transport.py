@@ -204,11 +204,11 @@ class DdsTransport(Transport):
     def _on_entities(self, payload: bytes, info: Info) -> None:
         def note() -> None:
             try:
-                told = entities.decode(payload)
+                listed = entities.decode(payload)
             except WireError:  # nonsense of somebody's; what was good stays
                 return
-            if told.guid[:12] == info.writer[:12]:  # a participant tells of itself only
-                self._others.on_entities(told)
+            if listed.guid[:12] == info.writer[:12]:  # a participant tells of itself only
+                self._others.on_entities(listed)
 
         self._worker.post(note)
 
@@ -264,7 +264,7 @@ class DdsTransport(Transport):
 
 
 class _Entity(Protocol):
-    """What an endpoint's token has on DDS."""
+    """Endpoints of DDS that an endpoint's token has."""
 
     on_guids: Callable[[], object]
     """Function that is called when its GUIDs have changed."""

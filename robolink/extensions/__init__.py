@@ -7,7 +7,8 @@
     [project.entry-points."robolink.programs"]
     "my_robot.drive" = "my_package.drive:Drive"  # robolink run my_robot drive
 
-There are five: commands, programs, sensors, interfaces and nodes. How to write one: docs/reference/extensions.md.
+There are six: commands, programs, sensors, interfaces, nodes and networks. docs/reference/extensions.md says how to
+write one.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ REGISTRIES = {
     "robolink.sensors": "robolink.sim.sensors:SENSORS",
     "robolink.interfaces": "robolink.interfaces.standard:INTERFACES",
     "robolink.nodes": "robolink.workspace.programs:NODES",
+    "robolink.networks": "robolink.networks.kinds:NETWORKS",
 }
 """Places of the registries, by group: each is in the room of its kind, and imported when it is used."""
 

@@ -14,6 +14,7 @@ from robolink.documents.mistakes import Step
 from robolink.documents.yamlfile import Document, read
 from robolink.exceptions import DocumentError, TransportError
 from robolink.networks import hosts
+from robolink.networks.kinds import OWN
 from robolink.networks.limits import Limits, mistakes
 from robolink.networks.request import ALIASES, ENDPOINT, NAMES, NetworkRequest
 from robolink.system.files import expanded, is_file
@@ -125,7 +126,7 @@ def _is_own(folder: Path) -> bool:
 def _read(path: Path) -> dict[str, str | Peers]:
     document = read(path, dict[str, str | Peers])
     for name, meant in document.value.items():
-        if name in NAMES or name in ALIASES:
+        if name in NAMES or name in ALIASES or name in OWN:
             raise document.error([name], f"'{name}' is the name of another network already", key=True)
         if not _NAME.fullmatch(name):
             raise document.error([name], "a name has letters, digits, _ and - only", key=True)

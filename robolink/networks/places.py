@@ -7,13 +7,15 @@ from typing import Any, NamedTuple
 
 from robolink.exceptions import TransportError, nearest
 from robolink.networks import hosts, networks_file
+from robolink.networks.kinds import OWN
 from robolink.networks.port_probe import REFUSES, ROUTER, SILENT, STRANGER, Port
 from robolink.networks.refusals import WANTS_KEYS, wants_keys
 from robolink.networks.request import ALIASES, FIRST_PORT, NAMES, ROUTER_PORT, NetworkRequest
 from robolink.networks.settings import client, settings
 
 KNOWN = (
-    f"the networks are {', '.join(NAMES)}, HOST[:PORT] and tls/HOST[:PORT] of a robot or router, and files of Zenoh's"
+    f"the networks are {', '.join((*NAMES, *OWN))}, HOST[:PORT] and tls/HOST[:PORT] of a robot or router,"
+    " and files of Zenoh's"
 )
 _OTHERS = {
     STRANGER: "is a program that does not speak Zenoh: is the port right?",
@@ -123,7 +125,7 @@ def _what_to_do(host: hosts.Host, domain: int) -> str:
 
 def _unknown(request: NetworkRequest, known: Mapping[str, object], environ: Mapping[str, str]) -> TransportError:
     value = request.value[:200]
-    names = [*NAMES, *ALIASES, *known]
+    names = [*NAMES, *ALIASES, *OWN, *known]
     wrong = hosts.mistake(value)
     if not wrong:
         more = f", {', '.join(sorted(known)[:8])} of {networks_file.FILE}" if known else ""

@@ -21,6 +21,7 @@ from robolink.interfaces import KINDS, find
 from robolink.interfaces.standard import types_of
 from robolink.interfaces.std_msgs.msg import Header
 from robolink.message import type_hash
+from robolink.networks.kinds import Kind
 from robolink.serialization import deserialize_message, serialize_message
 from robolink.sim import Pose, RobotDescription, World, WorldDescription
 from robolink.sim.description import Wheel
@@ -106,6 +107,16 @@ def check_node(name: str) -> None:
     _check_runs(name, source)
 
 
+def check_network(name: str) -> None:
+    """Check a network of another kind: its functions can be called.
+
+    Args:
+        name: Name for `--network`.
+    """
+    found = _part("robolink.networks", name)
+    _expect(isinstance(found, Kind) and all(map(callable, found)), name, "it is not a robolink.networks.kinds.Kind")
+
+
 def check_sensor(key: str) -> None:
     """Check a kind of sensor: its keys, what it measures in a world, and the message that becomes of it.
 
@@ -160,6 +171,7 @@ _CHECKS: dict[str, Callable[[str], None]] = {
     "robolink.sensors": check_sensor,
     "robolink.interfaces": check_interfaces,
     "robolink.nodes": check_node,
+    "robolink.networks": check_network,
 }
 
 

@@ -71,10 +71,10 @@ class Launch:
 
     def _make_context(self) -> Context:
         """Return the context of the launcher's own node, on the domain of the test."""
-        from robolink.transport import open_zenoh
+        from robolink.transport import open_network
 
         domain = int(self._env["ROS_DOMAIN_ID"])
-        context = Context(transport=open_zenoh(domain, self._env["ROBOLINK_NETWORK"]))
+        context = Context(transport=open_network(domain, self._env["ROBOLINK_NETWORK"]))
         context.init([], domain_id=domain)
         return context
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from robolink.exceptions import TransportError, nearest
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
 
-__all__ = ["Handle", "Outlet", "Query", "Sample", "Sink", "Transport", "connect", "open_zenoh"]
+__all__ = ["Handle", "Outlet", "Query", "Sample", "Sink", "Transport", "connect", "open_network", "open_zenoh"]
 
 
 def connect(
@@ -19,9 +19,9 @@ def connect(
 
     Args:
         url: `memory://NAME` inside this process, `zenoh://` between processes; a Transport is returned as it is.
-        domain: ROS domain id, 0 to 232; for Zenoh only.
-        network: `localhost`, `lan`, `off`, HOST[:PORT], tls/HOST[:PORT], a name of networks.yaml or a file of Zenoh's;
-            None asks the environment. For Zenoh only.
+        domain: ROS domain id, 0 to 232; not for memory.
+        network: `localhost`, `lan`, `off`, HOST[:PORT], tls/HOST[:PORT], a name of networks.yaml or a file of Zenoh's,
+            or `dds`, whatever the URL says; None asks the environment. Not for memory.
         enclave: Enclave whose keys and rights it has, where the environment asks for security; None is `/`.
 
     Raises:
@@ -37,10 +37,30 @@ def connect(
 
             return MemoryTransport(name)
         case "zenoh" if not name:
-            return open_zenoh(domain, network, enclave=enclave)
+            return open_network(domain, network, enclave=enclave)
     raise TransportError(
         f"no transport '{url[:200]}'{nearest(scheme[:200], ('memory', 'zenoh'))}: expected memory://NAME or zenoh://"
     )
+
+
+def open_network(domain: int = 0, network: str | None = None, *, enclave: str | None = None) -> Transport:
+    """Open a session on the requested network, of Zenoh or of another kind, as `connect` does.
+
+    Args:
+        domain: ROS domain id.
+        network: As for `connect`.
+        enclave: As for `connect`.
+
+    Raises:
+        TransportError: as `connect` does.
+    """
+    from robolink.networks.kinds import requested_kind
+
+    kind = requested_kind(network, os.environ)
+    if kind is None:
+        return open_zenoh(domain, network, enclave=enclave)
+    opened: Transport = kind.open(domain, os.environ, enclave)
+    return opened
 
 
 def open_zenoh(

@@ -297,13 +297,16 @@ def _join_network(entries: Sequence[Entry]) -> None:
     import os
 
     from robolink.launch.planning import network_of
+    from robolink.networks.kinds import requested_kind
     from robolink.networks.request import ALIASES, NAMES, NETWORK, ask, domain_id
 
     given = network_of(entries, os.environ)
     os.environ.update(given)  # not in each node's `env`, with which none can be forked
     if NETWORK in given:
         ask(os.environ, given[NETWORK], "network, in the launch file")
-    if os.environ.get(NETWORK, "localhost") not in (*NAMES, *ALIASES):
+    if (kind := requested_kind(None, os.environ)) is not None:
+        kind.meets(os.environ)
+    elif os.environ.get(NETWORK, "localhost") not in (*NAMES, *ALIASES):
         from robolink.transport import network
 
         network.plan(None, domain_id(os.environ), os.environ)  # one line here, and not one of each node

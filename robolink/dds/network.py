@@ -1,0 +1,104 @@
+"""The network `dds`: a session on DDS as the environment requests it, by ROS 2's own variables.
+
+Nothing leaves the machine by default. Where ROS_AUTOMATIC_DISCOVERY_RANGE says SUBNET, or ROS_STATIC_PEERS names
+machines, one interface beside loopback is used: that of ROBOLINK_DDS_INTERFACE, else the one that leads there.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Mapping
+
+from robolink.dds.transport import DdsTransport
+from robolink.exceptions import SecurityError, TransportError
+from robolink.networks.kinds import Kind
+from robolink.networks.request import RANGE, checked_domain
+from robolink.rtps import Participant, Range, Reach
+
+STATIC_PEERS = "ROS_STATIC_PEERS"
+"""ROS 2's variable with the machines to look for, `HOST;HOST`."""
+
+INTERFACE = "ROBOLINK_DDS_INTERFACE"
+"""Variable with the name or address of the interface that is used beside loopback."""
+
+UNSECURED = "ROBOLINK_DDS_UNSECURED"
+"""Variable by which a user of security has DDS nevertheless: 1."""
+
+_GROUP = "239.255.0.1"
+_ANY_PORT = 9
+_LOCAL = ("", "SYSTEM_DEFAULT", "LOCALHOST")
+
+
+def open_session(domain: int, environ: Mapping[str, str], enclave: str | None = None) -> DdsTransport:
+    """Open a session on DDS.
+
+    Args:
+        domain: ROS domain id.
+        environ: Environment.
+        enclave: Enclave that others are told; None is /.
+
+    Raises:
+        TransportError: if settings are wrong, or the domain cannot be joined.
+        SecurityError: where security is on, unless ROBOLINK_DDS_UNSECURED is 1.
+    """
+    checked_domain(domain)
+    refuse_security(environ)
+    reach = reach_of(environ)
+
+    def join(number: int, **options: object) -> Participant:
+        return Participant(number, reach=reach, **options)  # type: ignore[arg-type]
+
+    return DdsTransport(join, domain, enclave or "/")
+
+
+def refuse_security(environ: Mapping[str, str]) -> None:
+    """Raise SecurityError where security is on: whoever is on DDS would get past the rights of the enclaves."""
+    if environ.get("ROS_SECURITY_ENABLE", "false") in ("", "false") or environ.get(UNSECURED) == "1":
+        return
+    raise SecurityError(
+        "ROS_SECURITY_ENABLE is true, and robolink has no security on DDS: set it to false to go there, or"
+        f" {UNSECURED}=1 to go there although keys are used elsewhere"
+    )
+
+
+def reach_of(environ: Mapping[str, str]) -> Reach:
+    """Return how far a participant reaches; raises TransportError for variables that are wrong."""
+    text = environ.get(RANGE, "").upper()
+    if text not in (*_LOCAL, "OFF", "SUBNET"):
+        raise TransportError(f"{RANGE} must be one of LOCALHOST, SUBNET, OFF, got {environ[RANGE][:40]!r}")
+    if text == "OFF":
+        return Reach(range=Range.OFF)
+    peers = tuple(filter(None, (each.strip() for each in environ.get(STATIC_PEERS, "").split(";"))))
+    wide, interface = text == "SUBNET", environ.get(INTERFACE, "").strip()
+    if not (wide or peers):
+        return Reach(interface, range=Range.LOCALHOST)
+    return Reach(interface or _way_to(_GROUP if wide else peers[0]), peers, Range.SUBNET if wide else Range.LOCALHOST)
+
+
+def _way_to(address: str) -> str:
+    """Return the address of the interface by which another is reached; "" for this machine, or if none is."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((address, _ANY_PORT))  # nothing is sent: UDP only looks up the way
+            found = str(probe.getsockname()[0])
+        except OSError:
+            return ""
+    return "" if found.startswith("127.") else found
+
+
+def meets(environ: Mapping[str, str]) -> str:
+    """Return in words whom a session meets; raises what `open_session` does for settings."""
+    refuse_security(environ)
+    reach = reach_of(environ)
+    if reach.range is Range.OFF:
+        return "no other process"
+    whom = ["nodes of ROS 2 over DDS on this machine"]
+    if reach.interface and reach.range is Range.SUBNET:
+        whom.append(f"those that multicast reaches on {reach.interface}")
+    if reach.interface and reach.peers:
+        whom.append(f"those at {', '.join(reach.peers)}")
+    return " and ".join(whom) if len(whom) > 1 else f"{whom[0]} only"
+
+
+NETWORK = Kind(open_session, meets)
+"""The network `dds`."""
