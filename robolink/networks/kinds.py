@@ -31,15 +31,19 @@ class Kind(NamedTuple):
 
 
 def _own() -> dict[str, Kind]:
-    return {name: _late(name, target) for name, target in OWN.items()}
+    return {name: _late(name) for name, target in OWN.items() if optional.is_here(target)}
 
 
-def _late(name: str, target: str) -> Kind:
+def _late(name: str) -> Kind:
     def kind() -> Kind:
-        found: Kind = optional.part(target, f"the network '{name}'")
+        found: Kind = optional.part(OWN[name], _in_words(name))
         return found
 
     return Kind(lambda *given: kind().open(*given), lambda environ: kind().meets(environ))
+
+
+def _in_words(name: str) -> str:
+    return f"the network '{name}'"
 
 
 NETWORKS: Registry[Kind] = Registry("robolink.networks", _own)
@@ -61,8 +65,15 @@ def requested_kind(network: str | None, environ: Mapping[str, str]) -> Kind | No
 
 
 def kind_of(request: NetworkRequest) -> Kind | None:
-    """Return the kind of a network; None where it is one of Zenoh's. Raises ExtensionError as `requested_kind` does."""
+    """Return the kind of a network; None where it is one of Zenoh's.
+
+    Raises:
+        MissingPartError: if this installation lacks one that comes with robolink.
+        ExtensionError: as `requested_kind` does.
+    """
     name = request.value
     if name in NAMES or name in ALIASES or not _WORD.fullmatch(name):
         return None  # without a look at what is installed, which takes 10 ms
+    if name in OWN:
+        optional.check(OWN[name], _in_words(name))
     return NETWORKS.get(name)

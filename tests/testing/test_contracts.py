@@ -15,6 +15,7 @@ from robolink.testing.contracts import (
     ContractError,
     check_command,
     check_interfaces,
+    check_network,
     check_node,
     check_package,
     check_program,
@@ -27,6 +28,7 @@ CHECKS: dict[str, Callable[[str], None]] = {
     "robolink.sensors": check_sensor,
     "robolink.interfaces": check_interfaces,
     "robolink.nodes": check_node,
+    "robolink.networks": check_network,
 }
 OWN = [(group, name) for group, registry in registries().items() for name in registry.table()]
 HIDDEN = {name for name, entry in NOUNS.items() if entry.hidden}

@@ -188,7 +188,7 @@ def test_a_broken_file(tmp_path: Path, text: str, problem: str) -> None:
             {"ROBOLINK_NETWORK": "sub/nett"},
             (
                 "ROBOLINK_NETWORK: no network, host or file 'sub/nett' (did you mean 'subnet'?); the networks are "
-                "localhost, lan, off, HOST[:PORT] and tls/HOST[:PORT] of a robot or router, and files of Zenoh's"
+                "localhost, lan, off, dds, HOST[:PORT] and tls/HOST[:PORT] of a robot or router, and files of Zenoh's"
             ),
         ),
         ({"ZENOH_CONFIG_OVERRIDE": "nonsense/x=1"}, "ZENOH_CONFIG_OVERRIDE: 'nonsense/x=1': unknown key"),
