@@ -341,7 +341,7 @@ class StatefulWriter:
         if number > self.last:
             return
         if change is None or number < proxy.first:
-            self._send_gap(proxy, [number])
+            self._tell_gone(proxy, [number])
         elif missing:
             beat = self._beat(guid[12:], proxy.first, final=False)
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
@@ -361,7 +361,7 @@ class StatefulWriter:
                 if change.size > FRAGMENT:
                     proxy.repaired[number] = now + _REPAIR_PAUSE + change.size / _REPAIR_RATE
         if gone:
-            self._send_gap(proxy, gone)
+            self._tell_gone(proxy, gone)
         self._resend(now, proxy, again)
         self._expect(now)
 
@@ -392,8 +392,18 @@ class StatefulWriter:
         if bundle:
             self._send(proxy.address, [proxy.head, *bundle], False)
 
-    def _send_gap(self, proxy: ReaderProxy, numbers: Sequence[int]) -> None:
+    def _tell_gone(self, proxy: ReaderProxy, numbers: Sequence[int]) -> None:
         """Tell a reader that samples will not come; the numbers are rising and span at most 256."""
+        first = max(self.first, proxy.first)
+        if numbers[0] < first:
+            # The heartbeat says where the samples begin. Readers of Fast DDS need it so on links
+            # that lose frames.
+            self._heartbeat(proxy)
+            numbers = [number for number in numbers if number >= first]
+        if numbers:
+            self._send_gap(proxy, numbers)
+
+    def _send_gap(self, proxy: ReaderProxy, numbers: Sequence[int]) -> None:
         base = numbers[0] + 1
         rest = 1
         while rest < len(numbers) and numbers[rest] == base:

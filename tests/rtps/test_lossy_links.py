@@ -1,0 +1,30 @@
+"""Participants across a link that loses frames, in virtual time: what is said of samples that are gone, and repairs."""
+
+from __future__ import annotations
+
+from robolink.rtps import Qos
+from robolink.rtps.submessages import Gap, NackFrag
+from robolink.rtps.writer import FRAGMENT
+from tests.support.rtps_network import Faults, Network, numbers, sample
+
+
+def test_a_sample_that_newer_ones_replaced_is_not_told_by_a_gap() -> None:
+    """By a heartbeat, which is what readers of Fast DDS need."""
+    network = Network()
+    a, b = network.join(), network.join()
+    writer, (reader, got) = a.writer(qos=Qos(depth=2)), b.reader(qos=Qos(depth=2))
+    assert network.run(5, until=lambda: bool(writer.readers) and bool(reader.writers))
+    seen: list[bytes] = []
+
+    def second(raw: bytes, _: object) -> bool:
+        seen.append(raw)
+        return len(seen) == 2
+
+    network.faults = Faults(is_lost=second, delay=0.05)
+    for number in range(6):
+        a.put(writer, sample(number, 3 * FRAGMENT))
+        network.run(0.02)
+    network.run(1, until=lambda: 5 in numbers(got))
+    assert numbers(got) == [1, 2, 3, 4, 5]  # sample 0 was replaced before the request for its fragment came
+    assert network.submessages(NackFrag)
+    assert not network.submessages(Gap)
