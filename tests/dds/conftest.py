@@ -8,41 +8,20 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
-import random
 import shutil
-import socket
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
-from robolink.networks.request import FIRST_PORT
 from tests.dds.peers import Peer, environment
 from tests.judge.programs import TEST_MSGS
 from tests.judge.wheels import DISTRIBUTIONS, NoWheelsError, installed
 from tests.support.commands import ROBOLINK, Command
+from tests.support.domains import free_dds_domain
 
-DOMAINS = range(60, 80)
-"""Domains of these tests: those above 101 have ports that the system gives to others, too."""
 PROGRAMS = Path(__file__).parent / "programs"
-
-
-@contextlib.contextmanager
-def free_dds_domain() -> Iterator[int]:
-    """Reserve a domain on which nobody is; the lock is that of `tests.support.domains`."""
-    for number in random.sample(DOMAINS, len(DOMAINS)):
-        with contextlib.ExitStack() as stack:
-            mark, probe = (stack.enter_context(socket.socket(type=socket.SOCK_DGRAM)) for _ in range(2))
-            try:
-                mark.bind(("127.0.0.1", FIRST_PORT + number))
-                probe.bind(("", 7400 + 250 * number + 10))  # the first participant's
-            except OSError:
-                continue
-            probe.close()
-            yield number
-            return
-    raise RuntimeError("all domains for tests of DDS are in use")
 
 
 def skip_without_dds() -> None:

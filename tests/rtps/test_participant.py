@@ -12,7 +12,7 @@ import pytest
 
 from robolink.rtps import Endpoint, Info, Participant, Peer, Qos
 from robolink.rtps.parameters import Locator
-from tests.support.domains import free_domain
+from tests.support.domains import free_dds_domain
 from tests.support.rtps_network import TYPE, numbers, sample
 from tests.support.waits import wait_until
 
@@ -21,7 +21,7 @@ ALL = Qos(depth=0)
 
 @pytest.fixture
 def domain() -> Iterator[int]:
-    with free_domain() as found:
+    with free_dds_domain() as found:
         yield found
 
 

@@ -14,14 +14,14 @@ import pytest
 
 from robolink.rtps.reach import GROUP, LOOPBACK, Range, Reach, ReachError, multicast_port, ports
 from robolink.rtps.sockets import Sockets
-from tests.support.domains import free_domain
+from tests.support.domains import free_dds_domain
 
 Received = list[tuple[bytes, tuple[str, int]]]
 
 
 @pytest.fixture
 def domain() -> Iterator[int]:
-    with free_domain() as found:
+    with free_dds_domain() as found:
         yield found
 
 
