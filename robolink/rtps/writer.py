@@ -28,6 +28,9 @@ Send = Callable[[Locator, list[Buffer], bool], object]
 
 FRAGMENT = 63 * 1024
 """Bytes of a fragment, and of the largest sample that is sent whole: a datagram of UDP has room for 65,507."""
+FAR_FRAGMENT = 1200
+"""The same for other machines: what fits into one frame, also through a tunnel. With a larger datagram each lost frame
+costs all the others, 44 of them for one of 63 kB, and their rests fill the receiving kernel's memory for 30 s."""
 MOST_KEPT = 5_000
 MOST_KEPT_BYTES = 256 << 20
 """What a writer that keeps all keeps at most. Then the oldest samples go, as with a depth: readers that did not have
@@ -42,7 +45,7 @@ _REPAIR_BYTES = 8 << 20
 _REPAIR_PAUSE, _REPAIR_RATE = 0.01, 100e6
 """A large sample that was sent again is not sent once more before it can have arrived, at this many bytes a second."""
 _BUNDLE = 16 << 10
-"""Bytes of small samples that go into one datagram when several are sent again."""
+"""Bytes of small samples, with their headers, that go into one datagram when several are sent again."""
 
 
 class Change(NamedTuple):
@@ -60,6 +63,11 @@ class Change(NamedTuple):
     def size(self) -> int:
         """Bytes of the payload."""
         return len(self.payload) if self.payload is not None else 0
+
+
+def fragment_of(address: Locator) -> int:
+    """Return the bytes of a fragment for an address."""
+    return FRAGMENT if address[0].startswith("127.") else FAR_FRAGMENT
 
 
 class ReaderProxy:
@@ -255,17 +263,17 @@ class StatefulWriter:
     ) -> None:
         """Send a sample, whole or in fragments (all, or those), and heartbeats behind it."""
         stamp = encode_info_timestamp(change.timestamp)
-        payload = change.payload
-        if payload is None or len(payload) <= FRAGMENT:
+        payload, size = change.payload, fragment_of(address)
+        if payload is None or len(payload) <= size:
             data = encode_data(entity, self.entity, change.number, payload, change.inline, is_key=change.is_key)
             self._send(address, [head, stamp, data, beats], False)
             return
-        total = -(-len(payload) // FRAGMENT)
+        total = -(-len(payload) // size)
         chosen = range(1, total + 1) if fragments is None else [n for n in fragments if 0 < n <= total]
         last = chosen[-1] if chosen else 0
         for fragment in chosen:
             pieces = encode_data_frag(
-                entity, self.entity, change.number, fragment, FRAGMENT, payload, change.inline, is_key=change.is_key
+                entity, self.entity, change.number, fragment, size, payload, change.inline, is_key=change.is_key
             )
             self._send(address, [head, stamp, *pieces, beats if fragment == last else b""], True)
 
@@ -358,7 +366,7 @@ class StatefulWriter:
             elif now >= proxy.repaired.get(number, 0.0) and (not again or size + change.size <= _REPAIR_BYTES):
                 again.append(change)
                 size += change.size
-                if change.size > FRAGMENT:
+                if change.size > fragment_of(proxy.address):
                     proxy.repaired[number] = now + _REPAIR_PAUSE + change.size / _REPAIR_RATE
         if gone:
             self._tell_gone(proxy, gone)
@@ -367,23 +375,22 @@ class StatefulWriter:
 
     def _resend(self, now: float, proxy: ReaderProxy, changes: Sequence[Change]) -> None:
         """Send samples again, several small ones in a datagram, and a heartbeat behind them that requests an answer."""
-        entity = proxy.guid[12:]
+        entity, most = proxy.guid[12:], min(_BUNDLE, fragment_of(proxy.address))
         bundle: list[Buffer] = []
         size = 0
         for change in changes:
-            if change.size > _BUNDLE:
+            if change.size > most:
                 self._flush(proxy, bundle)
                 bundle, size = [], 0
                 self._send_change(proxy.address, proxy.head, entity, change, b"")
                 continue
-            bundle += (
-                encode_info_timestamp(change.timestamp),
-                encode_data(entity, self.entity, change.number, change.payload, change.inline, is_key=change.is_key),
-            )
-            size += change.size
-            if size > _BUNDLE:
+            stamp = encode_info_timestamp(change.timestamp)
+            data = encode_data(entity, self.entity, change.number, change.payload, change.inline, is_key=change.is_key)
+            if bundle and size + len(stamp) + len(data) > most:
                 self._flush(proxy, bundle)
                 bundle, size = [], 0
+            bundle += (stamp, data)
+            size += len(stamp) + len(data)
         if proxy.reliable and changes:
             bundle.append(self._beat(entity, proxy.first, final=False))
         self._flush(proxy, bundle)

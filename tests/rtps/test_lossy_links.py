@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from robolink.rtps import Qos
 from robolink.rtps.submessages import Gap, NackFrag
 from robolink.rtps.writer import FRAGMENT
@@ -28,3 +30,20 @@ def test_a_sample_that_newer_ones_replaced_is_not_told_by_a_gap() -> None:
     assert numbers(got) == [1, 2, 3, 4, 5]  # sample 0 was replaced before the request for its fragment came
     assert network.submessages(NackFrag)
     assert not network.submessages(Gap)
+
+
+@pytest.mark.parametrize(("host", "largest"), [("10.0.0.1", 1420 - 28), ("127.0.0.1", 65_507)])
+def test_a_datagram_to_another_machine_fits_into_a_frame(host: str, largest: int) -> None:
+    """Also through a tunnel (WireGuard: 1420 bytes with the headers of IP and UDP)."""
+    network = Network(host=host)
+    a, b = network.join(), network.join()
+    writer, (reader, got) = a.writer(qos=Qos(depth=0)), b.reader(qos=Qos(depth=0))
+    assert network.run(5, until=lambda: bool(writer.readers) and bool(reader.writers))
+    network.sent.clear()
+    network.faults = Faults(loss=0.3)
+    sizes = [12, 1200, 1204, 500, 600, 100_000, *(12 for _ in range(100))]
+    for number, size in enumerate(sizes):
+        a.put(writer, sample(number, size), related=(reader.guid, number))
+    network.run(20, until=lambda: len(got) == len(sizes))
+    assert [len(each) for each in got] == sizes
+    assert largest / 2 < max(len(raw) for _, raw, _ in network.sent) <= largest

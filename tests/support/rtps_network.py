@@ -56,7 +56,7 @@ class Member:
 
     def __init__(self, network: Network, index: int, vendor: bytes, lease: float, prefix: bytes) -> None:
         self.network = network
-        self.metatraffic, self.default = (HOST, 7410 + 2 * index), (HOST, 7411 + 2 * index)
+        self.metatraffic, self.default = (network.host, 7410 + 2 * index), (network.host, 7411 + 2 * index)
         self.peers: list[tuple[bytes, bool]] = []
         self.found: list[tuple[Endpoint, bool]] = []
         self.is_up = True
@@ -66,7 +66,7 @@ class Member:
         me = ParticipantData(prefix, vendor, (self.metatraffic,), (self.default,), lease, "/", b"enclave=/;", 0)
         self.core = Core(
             me,
-            Resolve(network.search(self.metatraffic), _choose),
+            Resolve(network.search(self.metatraffic), network.choose),
             self._send,
             on_peer=self._on_peer,
             on_endpoint=lambda endpoint, came: self.found.append((endpoint, came)),
@@ -122,8 +122,10 @@ class Member:
 class Network:
     """Members, and the datagrams between them."""
 
-    def __init__(self, seed: int = 1) -> None:
+    def __init__(self, seed: int = 1, host: str = HOST) -> None:
         self.now = 100.0
+        self.host = host
+        """Address of all members; one that is not of loopback is another machine's to each of them."""
         self.members: list[Member] = []
         self.faults = Faults()
         self.sent: list[tuple[float, bytes, Locator]] = []
@@ -135,7 +137,11 @@ class Network:
 
     def search(self, own: Locator) -> list[Locator]:
         """Return where participants may be."""
-        return [(HOST, port) for port in range(7410, 7474, 2) if port != own[1]]
+        return [(self.host, port) for port in range(7410, 7474, 2) if port != own[1]]
+
+    def choose(self, addresses: Sequence[Locator], source: Locator) -> Locator | None:
+        """Return where a participant is met."""
+        return (self.host, addresses[0][1]) if addresses else None
 
     def join(
         self, vendor: str = "ours", lease: float = 20.0, index: int | None = None, prefix: bytes | None = None
@@ -206,10 +212,6 @@ class Network:
 def _writer(each: object) -> bytes:
     found: bytes = getattr(each, "writer", b"")  # what only informs has none
     return found
-
-
-def _choose(addresses: Sequence[Locator], source: Locator) -> Locator | None:
-    return (HOST, addresses[0][1]) if addresses else None
 
 
 def sample(number: int, size: int = 12) -> bytes:
