@@ -165,7 +165,12 @@ def _has_open_looks() -> bool:
 
 
 def _end(code: int) -> None:
-    """End the process without closing its sessions: see `robolink.cli.shared.session.looking`."""
+    """End the process without closing its sessions: see `robolink.cli.shared.session.looking`.
+
+    Those on DDS do say goodbye: else others show the command's node for 20 s.
+    """
+    if (lifetime := sys.modules.get("robolink.transport.lifetime")) is not None:
+        lifetime.say_goodbye()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):  # closed, or None
             stream.flush()

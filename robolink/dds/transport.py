@@ -95,7 +95,7 @@ class DdsTransport(Transport):
         writer = participant.writer(entities.TOPIC, entities.TYPE, _DISCOVERY_QOS)
         self._nodes = OwnNodes(participant.guid, writer.put, self._worker)
         participant.reader(entities.TOPIC, entities.TYPE, _DISCOVERY_QOS, self._on_entities)
-        lifetime.watch_over(self)
+        lifetime.watch_over(self, says_goodbye=True)
 
     # Declarations
 

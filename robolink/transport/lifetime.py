@@ -40,6 +40,8 @@ OPENING_WAIT = 0.3
 """The same for sessions that are being opened for nobody any more, in seconds; Zenoh waits 10 s for a silent router."""
 
 _open: weakref.WeakSet[Mortal] = weakref.WeakSet()
+_with_goodbye: weakref.WeakSet[Mortal] = weakref.WeakSet()
+"""Those of them whose end others would notice late if they did not tell it."""
 _unfinished: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 _opening: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
 _last: list[object] = []
@@ -53,10 +55,17 @@ _deadline = 0.0
 """End of the exit's wait, by `clocks.monotonic`."""
 
 
-def watch_over(mortal: Mortal) -> None:
-    """Register a resource: it is closed at exit if it still exists, and disowned in forked children."""
+def watch_over(mortal: Mortal, *, says_goodbye: bool = False) -> None:
+    """Register a resource: it is closed at exit if it still exists, and disowned in forked children.
+
+    Args:
+        mortal: The resource.
+        says_goodbye: Whether others would take it for alive, until its lease ends, if it ended without `close`.
+    """
     _arm()
     _open.add(mortal)
+    if says_goodbye:
+        _with_goodbye.add(mortal)
     if _ending:
         _last.append(mortal)
 
@@ -64,6 +73,14 @@ def watch_over(mortal: Mortal) -> None:
 def forget(mortal: Mortal) -> None:
     """Unregister a resource that has been closed."""
     _open.discard(mortal)
+    _with_goodbye.discard(mortal)
+
+
+def say_goodbye() -> None:
+    """Close those that others would miss late, in a process that ends without closing anything else."""
+    for mortal in all_of(_with_goodbye):
+        with contextlib.suppress(Exception):
+            mortal.close()
 
 
 def finish(work: Callable[[], object], within: float) -> None:
