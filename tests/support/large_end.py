@@ -21,9 +21,11 @@ import robolink
 from robolink.event_handler import SubscriptionEventCallbacks
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.std_msgs.msg import UInt8MultiArray
+from robolink.logging import Record, add_handler
 from robolink.publisher import Publisher
 from robolink.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from robolink.subscription import MessageInfo
+from robolink.transport import shared_memory
 
 TOPIC = "large"
 PROFILES = {
@@ -47,7 +49,7 @@ class Counts:
 
     def __init__(self, size: int, busy: float) -> None:
         self.received, self.wrong, self.late = 0, 0, 0
-        self.first, self.last, self.told = 0, 0, 0
+        self.first, self.last, self.told, self.limited = 0, 0, 0, 0
         self._size, self._busy = size, busy
 
     def hear(self, payload: bytes, info: MessageInfo) -> None:
@@ -60,6 +62,10 @@ class Counts:
         self.first = self.first or number
         self.last = max(self.last, number)
         time.sleep(self._busy)
+
+    def read(self, record: Record) -> None:
+        """Note the line by which the session says that it takes no more memory of new publishers."""
+        self.limited = self.limited or int(record.file == shared_memory.__file__)
 
 
 def memory(field: str) -> int:
@@ -111,6 +117,7 @@ def receive(node: robolink.Node, kind: str, size: int, busy: float) -> None:
         counts.told = info.total_count
 
     events = SubscriptionEventCallbacks(message_lost=lost)
+    add_handler(counts.read)
     subscription = node.create_subscription(
         UInt8MultiArray, TOPIC, counts.hear, PROFILES[kind], raw=True, event_callbacks=events
     )
@@ -135,7 +142,9 @@ def main() -> None:
     parser.add_argument("--busy", type=float, default=0.0)
     parser.add_argument("--receivers", type=int, default=1)
     parser.add_argument("--unchecked", action="store_true")
+    parser.add_argument("--pools", type=int, default=shared_memory.MOST_POOLS)
     asked = parser.parse_args()
+    shared_memory.MOST_POOLS = asked.pools
     if asked.unchecked:
         _check_nothing()
     robolink.init(args=[])

@@ -22,7 +22,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from robolink.transport.port_sharing import free_domain
-from robolink.transport.shared_memory import VARIABLE, decide, this_machine
+from robolink.transport.shared_memory import MOST_POOLS, VARIABLE, decide, this_machine
+from tests.support.commands import PATIENCE
 from tests.support.obedient import ROOT, line, start, tell
 from tests.support.ports import free_port
 
@@ -47,6 +48,8 @@ class Counted(NamedTuple):
     locked: int
     """Locked memory of the process, in kB."""
     resident: int
+    limited: int
+    """1 once it has said that it takes no more memory of new publishers, else 0."""
 
     @property
     def fine(self) -> bool:
@@ -69,15 +72,21 @@ class Ends:
 
 def count(process: subprocess.Popen[str]) -> Counted:
     """Return what a receiver was delivered so far, once nothing comes any more."""
-    report: dict[str, int] = {}
+    found: dict[str, int] = {}
     while True:
-        tell(process, "report")
-        before, report = report, json.loads(line(process))
-        if report["received"] == before.get("received", -1):
+        before, found = found, report(process)
+        if found["received"] == before.get("received", -1):
             break
         time.sleep(0.3)
-    sent = report["last"] - report["first"] + 1 if report["received"] else 0
-    return Counted(sent, **{name: report[name] for name in Counted._fields[1:]})
+    sent = found["last"] - found["first"] + 1 if found["received"] else 0
+    return Counted(sent, **{name: found[name] for name in Counted._fields[1:]})
+
+
+def report(process: subprocess.Popen[str]) -> dict[str, int]:
+    """Return what a receiver has counted so far."""
+    tell(process, "report")
+    found: dict[str, int] = json.loads(line(process))
+    return found
 
 
 def freeze(
@@ -161,25 +170,57 @@ def join_late(*, size: int = 1_000_000, prefix: Sequence[str] = ()) -> list[Coun
         return [count(receiver)]
 
 
-def restart(
-    *, times: int = 60, messages: int = 5, size: int = 1_000_000, every: int = 10, environ: Mapping[str, str]
-) -> list[Counted]:
-    """Start publishers one after the other for one receiver; returns its counts after `every` so many."""
-    found = []
-    with ExitStack() as stack:
-        ends = Ends(stack, environ)
-        receiver = ends.start("receive", "--bytes", str(size))
-        assert line(receiver) == "ready"
-        for number in range(1, times + 1):
-            publisher = ends.start("publish", "--bytes", str(size))
+class Restarts:
+    """A receiver, and publishers of `messages` messages each that are started and killed one after the other.
+
+    With `shares` a publisher sends as many more until the receiver has its memory, or takes none of new ones any more:
+    a publisher's first messages go by TCP until its memory is there, and on a busy machine that takes a while.
+    """
+
+    def __init__(
+        self,
+        stack: ExitStack,
+        *,
+        messages: int = 5,
+        size: int = 1_000_000,
+        pools: int = MOST_POOLS,
+        environ: Mapping[str, str] | None = None,
+    ) -> None:
+        self._ends, self._messages, self._size = Ends(stack, environ or {}), messages, size
+        self._receiver = self._ends.start("receive", "--bytes", str(size), "--pools", str(pools))
+        assert line(self._receiver) == "ready"
+        self.sent = 0
+
+    def play(self, times: int, *, shares: bool = False) -> Counted:
+        """Start so many publishers; return what the receiver has of all so far."""
+        for _ in range(times):
+            before = report(self._receiver)["locked"]
+            publisher = self._ends.start("publish", "--bytes", str(self._size))
             assert line(publisher) == "ready"
-            tell(publisher, str(messages))
-            line(publisher)
+            self._send(publisher)
+            deadline = time.monotonic() + PATIENCE
+            while shares and not self._has_more_than(before):
+                assert time.monotonic() < deadline, "the receiver does not get the publisher's memory"
+                self._send(publisher)
             publisher.kill()
             publisher.wait()
-            if number % every == 0:
-                found.append(count(receiver))
-    return [each._replace(sent=number * every * messages) for number, each in enumerate(found, 1)]
+        return count(self._receiver)._replace(sent=self.sent)
+
+    def _send(self, publisher: subprocess.Popen[str]) -> None:
+        tell(publisher, str(self._messages))
+        line(publisher)
+        self.sent += self._messages
+
+    def _has_more_than(self, locked: int) -> bool:
+        found = report(self._receiver)
+        return bool(found["limited"]) or found["locked"] - locked > self._size // 1000
+
+
+def restart(*, times: int, size: int = 1_000_000, environ: Mapping[str, str]) -> list[Counted]:
+    """Start publishers one after the other for one receiver; returns its counts after ten each."""
+    with ExitStack() as stack:
+        restarts = Restarts(stack, size=size, environ=environ)
+        return [restarts.play(10) for _ in range(times // 10)]
 
 
 ROUTER = """
@@ -239,6 +280,7 @@ def little_space() -> list[Counted]:
     scene = f"""
 import json, subprocess, sys
 from tests.support.large_messages import pass_on
+from tests.support.commands import PATIENCE
 from tests.support.obedient import line, tell
 other = subprocess.Popen([sys.executable, "-c", {neighbour!r}], stdin=-1, stdout=-1, text=True)
 tell(other, "go"), line(other)
