@@ -85,15 +85,16 @@ def _numbers(version: str) -> tuple[int, ...]:
 def settings(facts: Facts) -> Verdict:
     """Check that the environment's settings are valid, and that none is without effect."""
     environ, expected = facts.environ, facts.settings
-    without_effect = [each for each in _NO_EFFECT if environ.get(each, "0") not in ("", "0")]
+    names = () if expected.whom else _NO_EFFECT  # a network of another kind reads what it does
+    without_effect = [each for each in names if environ.get(each, "0") not in ("", "0")]
     warnings = [f"{each}={environ[each][:80]} has no effect: {_NO_EFFECT[each]}" for each in without_effect]
     middleware = environ.get("RMW_IMPLEMENTATION", "")
-    if middleware not in ("", "rmw_zenoh_cpp"):
+    if middleware not in ("", "rmw_zenoh_cpp") and not expected.whom:
         warnings.append(
             f"RMW_IMPLEMENTATION={middleware[:80]}: ROS 2 nodes started from here do not meet robolink's; "
             "start them with RMW_IMPLEMENTATION=rmw_zenoh_cpp"
         )
-    if expected.transport != "zenoh":
+    if expected.transport != "zenoh" and not (expected.whom or expected.errors):
         warnings.append(f"ROBOLINK_TRANSPORT={expected.transport[:80]}: nodes see only their own process")
     said = expected.origin if expected.origin in _NOTED else NETWORK  # which the command line or a launch file sets
     noted = [name for name in _NOTED if environ.get(name) and name != said]
@@ -114,6 +115,8 @@ def loopback(facts: Facts) -> Verdict:
 def reach(facts: Facts) -> Verdict:
     """Check that a session whose settings lead to other machines has a link there."""
     settings, seen, whom = facts.settings, facts.seen, facts.reach
+    if settings.whom and not seen.error:
+        return Verdict(f"nodes meet {settings.whom}")
     if settings.transport != "zenoh":
         return Verdict("not used with these settings")
     if seen.error:

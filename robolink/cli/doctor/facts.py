@@ -24,6 +24,9 @@ class Settings(NamedTuple):
     origin: str = ""
     """Environment variable that asks for this network; empty for the default."""
     transport: str = "zenoh"
+    """`zenoh`, the name of a network of another kind, or what ROBOLINK_TRANSPORT says."""
+    whom: str = ""
+    """Whom a session meets on a network of another kind than Zenoh's, in words; empty for Zenoh."""
     meets: bool = True
     """True if processes find each other at the rendezvous port."""
     shared_memory: bool = True

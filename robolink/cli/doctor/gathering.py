@@ -15,8 +15,10 @@ from robolink.cli.doctor.facts import Facts, Seen, Settings
 from robolink.cli.doctor.look import count_nodes, look
 from robolink.cli.doctor.ports import also_open_at, ascii_only, holder, loopback_works, owner
 from robolink.constants import LAST_DOMAIN
-from robolink.exceptions import TransportError
-from robolink.extensions import registries
+from robolink.exceptions import SecurityError, TransportError
+from robolink.extensions import ExtensionError, registries
+from robolink.extensions.optional import MissingPartError
+from robolink.networks.kinds import kind_of
 from robolink.networks.port_probe import HOST, STRANGER, Port, listening
 from robolink.networks.refusals import wants_keys
 from robolink.networks.request import FIRST_PORT, RANGE, ROS_ROUTER, NetworkRequest, domain_id, requested
@@ -104,13 +106,17 @@ def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | 
     errors: list[str] = []
     domain = _try(errors, 0, lambda: domain_id(environ))
     origin, value = _try(errors, NetworkRequest("", "localhost"), lambda: requested(None, environ))
-    found = None if errors else _try(errors, None, lambda: network.plan(None, domain, environ))
+    kind = None if errors else _try(errors, None, lambda: kind_of(NetworkRequest(origin, value)))
+    whom = "" if kind is None else _try(errors, "", lambda: kind.meets(environ))
+    is_zenoh = not errors and kind is None
+    found = _try(errors, None, lambda: network.plan(None, domain, environ)) if is_zenoh else None
     config = None if found is None else _try(errors, None, found.config)
     settings = Settings(
         domain=domain,
         network=value,
         origin="" if origin == RANGE and not environ.get(origin) else origin,
-        transport=environ.get("ROBOLINK_TRANSPORT") or "zenoh",
+        transport=environ.get("ROBOLINK_TRANSPORT") or ("zenoh" if kind is None else value),
+        whom=whom,
         meets=network.meets_at_port(value, environ) if found is None else found.meets,
         shared_memory=config is None or config.get_json(network.SHARES_MEMORY) == "true",
         errors=tuple(errors),
@@ -121,7 +127,7 @@ def read_settings(environ: Mapping[str, str]) -> tuple[Settings, zenoh.Config | 
 def _try(errors: list[str], otherwise: ResultT, action: Callable[[], ResultT]) -> ResultT:
     try:
         return action()
-    except TransportError as error:
+    except (TransportError, SecurityError, ExtensionError, MissingPartError) as error:
         errors.append(str(error))
         return otherwise
 
@@ -209,7 +215,7 @@ def _with_graph(facts: Facts) -> Facts:
     why_not = _why_not_to_look(facts)
     if why_not:
         return facts._replace(seen=Seen(error=why_not))
-    domain, transport = facts.settings.domain, facts.settings.transport
+    domain, transport = facts.settings.domain, "zenoh" if facts.settings.whom else facts.settings.transport
     seen: list[Seen] = []
     others: dict[int, int | None] = dict.fromkeys(_other_domains(facts))
 

@@ -72,7 +72,7 @@ def describe(facts: Facts) -> Description:
         settings.network,
         settings.origin,
         settings.domain,
-        str(reach),
+        settings.whom or str(reach),
         [*reach.listens],
         [*reach.connects],
         reach.multicast,
@@ -116,17 +116,24 @@ def how(link: Link, facts: Facts) -> str:
 
 def lines(found: Description) -> list[str]:
     """Return the description as lines for people."""
+    from robolink.networks.kinds import kind_of
+    from robolink.networks.request import NetworkRequest
+
     requested = f"asked for by {found.origin}" if found.origin else "the default"
     goes = [*([f"multicast {found.multicast}"] if found.multicast else []), *found.connects]
     sessions = {each["session"] for each in found.links}
-    whom = f"{len(sessions)} session{'s' * (len(sessions) != 1)}, {found.nodes} node{'s' * (found.nodes != 1)}"
+    whom = f"{found.nodes} node{'s' * (found.nodes != 1)}"
     result = [
         f"network   {found.network} ({requested}), domain {found.domain}",
         f"meets     {found.meets}",
-        f"listens   {', '.join(found.listens) or 'nowhere'}",
-        f"goes to   {', '.join(goes) or 'nobody'}",
-        f"found     {f'not known: {found.unseen}' if found.unseen else whom}",
     ]
+    if kind_of(NetworkRequest(found.origin, found.network)) is None:  # the others have no such addresses and links
+        whom = f"{len(sessions)} session{'s' * (len(sessions) != 1)}, {whom}"
+        result += [
+            f"listens   {', '.join(found.listens) or 'nowhere'}",
+            f"goes to   {', '.join(goes) or 'nobody'}",
+        ]
+    result.append(f"found     {f'not known: {found.unseen}' if found.unseen else whom}")
     result += [f"          {each['role']} at {each['address']}: {each['found']}{_named(each)}" for each in found.links]
     result += [f"WARN      {each}" for each in found.warnings]
     return [shown(each, LONGEST) for each in (*result, *(f"FAIL      {each}" for each in found.errors))]

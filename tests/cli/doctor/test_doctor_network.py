@@ -6,8 +6,9 @@ import json
 
 import pytest
 
+from robolink.cli.doctor import checks, gathering
 from robolink.cli.doctor import network as command
-from robolink.cli.doctor.facts import Facts, Seen, Settings
+from robolink.cli.doctor.facts import Facts, Seen, Settings, Verdict
 from robolink.cli.main import main
 from robolink.networks.port_probe import ROUTER, Port
 from robolink.transport.reach import Link, Reach
@@ -35,6 +36,43 @@ def test_whom_it_has_found_and_how() -> None:
         "          peer at tcp/127.0.0.1:17447: the domain's port",
         "          router at tcp/127.0.0.1:7447: the router on this machine",
         "          peer at tcp/10.0.0.2:33333: gossip, for it does not answer a multicast",
+    ]
+
+
+@pytest.mark.annex("dds")
+def test_a_network_of_another_kind_says_whom_it_meets() -> None:
+    token = NodeToken(0, "cc", "0", "0", "far", "/")
+    settings = Settings(network="dds", origin="--network", transport="dds", whom="nodes of ROS 2 over DDS")
+    facts = Facts(settings=settings, seen=Seen("ee", (token,)))
+    assert said(facts) == [
+        "network   dds (asked for by --network), domain 0",
+        "meets     nodes of ROS 2 over DDS",
+        "found     1 node",
+    ]
+    assert checks.reach(facts) == Verdict("nodes meet nodes of ROS 2 over DDS")
+
+
+@pytest.mark.annex("dds")
+def test_what_ros_has_for_dds_has_its_effect_there() -> None:
+    environ = {"ROS_STATIC_PEERS": "10.0.0.9", "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
+    there = Settings(network="dds", transport="dds", whom="nodes of ROS 2 over DDS")
+    assert checks.settings(Facts(environ, settings=there)).warnings == ()
+    assert len(checks.settings(Facts(environ)).warnings) == 2
+
+
+def read(**environ: str) -> Settings:
+    return gathering.read_settings(environ)[0]
+
+
+@pytest.mark.annex("dds")
+def test_the_settings_of_dds_are_read_as_nodes_read_them() -> None:
+    found = read(ROBOLINK_NETWORK="dds", ROS_DOMAIN_ID="7")
+    assert (found.transport, found.domain, found.meets, found.errors) == ("dds", 7, False, ())
+    assert found.whom == "nodes of ROS 2 over DDS on this machine only"
+    assert "ROS_SECURITY_ENABLE" in read(ROBOLINK_NETWORK="dds", ROS_SECURITY_ENABLE="true").errors[0]
+    wrong = Facts(settings=read(ROBOLINK_NETWORK="dds", ROS_AUTOMATIC_DISCOVERY_RANGE="far"))
+    assert checks.settings(wrong).findings == [
+        "ROS_AUTOMATIC_DISCOVERY_RANGE must be one of LOCALHOST, SUBNET, OFF, got 'far'"
     ]
 
 
