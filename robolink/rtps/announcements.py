@@ -27,6 +27,8 @@ from robolink.rtps.parameters import (
 )
 from robolink.rtps.types import Qos
 
+MOST_ANNOUNCED = 64 << 10
+"""Bytes of an announcement. Those of ROS have some 500: a larger one is refused, since its words are kept."""
 NO_DEPTH = -1
 """Depth of an endpoint that does not say how many samples it keeps."""
 
@@ -95,7 +97,7 @@ def read_participant(payload: Buffer) -> ParticipantData:
     Raises:
         RtpsError: if it is nonsense, or does not say who it is.
     """
-    found = read_list(payload)
+    found = _read(payload)
     guid = found.raw(ids.PID_PARTICIPANT_GUID, ids.GUID_BYTES)
     if guid is None:
         raise RtpsError("a participant without a GUID")
@@ -113,6 +115,12 @@ def read_participant(payload: Buffer) -> ParticipantData:
         domain=found.number(ids.PID_DOMAIN, 0) if ids.PID_DOMAIN in found else None,
         builtin_endpoints=found.number(ids.PID_BUILTIN_ENDPOINTS, ids.BUILTIN_ENDPOINTS),
     )
+
+
+def _read(payload: Buffer) -> Parameters:
+    if len(payload) > MOST_ANNOUNCED:
+        raise RtpsError(f"an announcement of {len(payload)} bytes: {MOST_ANNOUNCED} are read")
+    return read_list(payload)
 
 
 def encode_endpoint(data: EndpointData) -> bytes:
@@ -152,7 +160,7 @@ def read_endpoint(payload: Buffer, *, is_writer: bool) -> EndpointData:
     Raises:
         RtpsError: if it is nonsense, or lacks a GUID, a topic or a type.
     """
-    found = read_list(payload)
+    found = _read(payload)
     guid = found.raw(ids.PID_ENDPOINT_GUID, ids.GUID_BYTES)
     topic, type_name = found.text(ids.PID_TOPIC), found.text(ids.PID_TYPE)
     if guid is None or not topic or not type_name:

@@ -17,6 +17,8 @@ Buffer = bytes | bytearray | memoryview
 Locator = tuple[str, int]
 """IPv4 address and UDP port."""
 
+MOST_VALUE = 0xFFFC
+"""Bytes of a parameter's value."""
 SENTINEL = b"\x01\0\0\0"
 LIST_HEADER = b"\0\x03\0\0"
 """In front of a list that is a sample: PL_CDR_LE. Another byte order is read too."""
@@ -148,9 +150,15 @@ def read_list(payload: Buffer) -> Parameters:
 
 
 def parameter(pid: int, value: bytes) -> bytes:
-    """Return one parameter; its value is filled up to a multiple of 4 bytes."""
+    """Return one parameter; its value is filled up to a multiple of 4 bytes.
+
+    Raises:
+        ValueError: if there is no room for it.
+    """
     size = len(value)
     filling = -size % 4
+    if size + filling > MOST_VALUE:
+        raise ValueError(f"parameter {pid:#06x} of {size} bytes: {MOST_VALUE} have room")
     return _PAIR.pack(pid, size + filling) + value + bytes(filling)
 
 

@@ -151,6 +151,12 @@ def test_announcements_that_are_cut() -> None:
             read_endpoint(endpoint[:size], is_writer=True)
 
 
+def test_an_announcement_that_is_too_large() -> None:
+    more = encode_endpoint(EndpointData(GUID, True, "rt/a", "T"))[:-4] + parameter(0x3000, bytes(60_000)) * 2 + SENTINEL
+    with pytest.raises(RtpsError, match="an announcement of 120192 bytes: 65536 are read"):
+        read_endpoint(more, is_writer=True)
+
+
 @given(st.data())
 def test_flipped_bytes_are_refused_or_read(data: st.DataObject) -> None:
     participant = bytearray(encode_participant(ParticipantData(PREFIX, name="/", user_data=b"enclave=/;")))

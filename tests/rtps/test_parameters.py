@@ -87,6 +87,12 @@ def test_where_a_list_ends() -> None:
     assert raw[Parameters(raw, 2).end :] == b"payload"
 
 
+def test_a_value_that_has_no_room() -> None:
+    assert little(parameter(PID, bytes(0xFFFC))).raw(PID) == bytes(0xFFFC)
+    with pytest.raises(ValueError, match="parameter 0x002c of 65533 bytes: 65532 have room"):
+        parameter(PID, bytes(0xFFFD))
+
+
 @pytest.mark.parametrize(
     "value", [struct.pack("<I", 0xFFFFFFFF), struct.pack("<I", 2) + b"a", b"\5\0\0\0", b"\2\0\0\0\xff\xff"]
 )
