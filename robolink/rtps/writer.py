@@ -43,7 +43,8 @@ _REMIND_SAMPLES, _REMIND_BYTES = 32, 256 << 10
 _REPAIR_BYTES = 8 << 20
 """What one ACKNACK gets at most; the heartbeat behind it makes the reader request the rest."""
 _REPAIR_PAUSE, _REPAIR_RATE = 0.01, 100e6
-"""A large sample that was sent again is not sent once more before it can have arrived, at this many bytes a second."""
+"""A large sample that was sent again is not sent once more before it can have arrived, at this many bytes a second. Nor
+does a reader get more again than that: with a few bytes it could have us send megabytes without end."""
 _BUNDLE = 16 << 10
 """Bytes of small samples, with their headers, that go into one datagram when several are sent again."""
 
@@ -73,7 +74,7 @@ def fragment_of(address: Locator) -> int:
 class ReaderProxy:
     """What a writer knows of a reader."""
 
-    __slots__ = ("acked", "address", "first", "guid", "head", "reliable", "repaired", "serial")
+    __slots__ = ("acked", "address", "first", "guid", "head", "reliable", "repaired", "repaired_until", "serial")
 
     def __init__(self, guid: bytes, address: Locator, head: bytes, reliable: bool, first: int) -> None:
         self.guid, self.address, self.head, self.reliable = guid, address, head, reliable
@@ -85,14 +86,17 @@ class ReaderProxy:
         """Of its last ACKNACK; None: there was not any."""
         self.repaired: dict[int, float] = {}
         """Large samples that were sent again: until when they may be under way."""
+        self.repaired_until = 0.0
+        """When all that was sent again has left, at _REPAIR_RATE."""
 
 
 class _Route:
     """The readers behind one address: a sample goes there once."""
 
-    __slots__ = ("address", "entity", "first", "head", "reliable")
+    __slots__ = ("address", "entity", "first", "head", "proxies", "reliable")
 
-    def __init__(self, proxies: Sequence[ReaderProxy]) -> None:
+    def __init__(self, proxies: list[ReaderProxy]) -> None:
+        self.proxies = proxies
         self.address, self.head = proxies[0].address, proxies[0].head
         # One datagram to "all readers that are matched with this writer": one each would be delivered to all of them by
         # some, and costs each sample's size again.
@@ -133,7 +137,8 @@ class StatefulWriter:
         self._delay = _HEARTBEAT_AFTER
         self._under_way = self._bytes_under_way = 0
         """Since the last heartbeat that requested an acknowledgement."""
-        self._routes: list[_Route] = []
+        self._routes: dict[tuple[Locator, bytes], _Route] = {}
+        """By address and participant."""
 
     @property
     def first(self) -> int:
@@ -153,10 +158,11 @@ class StatefulWriter:
             reliable: it requests reliability.
             wants_old: it requests the samples that are kept for readers that come later.
         """
+        self.unmatch(guid)
         first = 1 if wants_old and self.qos.transient_local else self.last + 1
         proxy = ReaderProxy(guid, address, head, reliable and self.qos.reliable, first)
         self.readers[guid] = proxy
-        self._reroute()
+        self._reroute(proxy, came=True)
         if proxy.reliable:
             self._heartbeat(proxy)
             self._expect(now)
@@ -165,17 +171,23 @@ class StatefulWriter:
 
     def unmatch(self, guid: bytes) -> bool:
         """Forget a reader. Returns whether it was known."""
-        if self.readers.pop(guid, None) is None:
+        proxy = self.readers.pop(guid, None)
+        if proxy is None:
             return False
-        self._reroute()
+        self._reroute(proxy, came=False)
         self._forget_acknowledged()
         return True
 
-    def _reroute(self) -> None:
-        places: dict[tuple[Locator, bytes], list[ReaderProxy]] = {}
-        for proxy in self.readers.values():
-            places.setdefault((proxy.address, proxy.guid[:12]), []).append(proxy)
-        self._routes = [_Route(proxies) for proxies in places.values()]
+    def _reroute(self, proxy: ReaderProxy, *, came: bool) -> None:
+        place = (proxy.address, proxy.guid[:12])
+        before = self._routes.get(place)
+        proxies = [each for each in before.proxies if each is not proxy] if before else []
+        if came:
+            proxies.append(proxy)
+        if proxies:
+            self._routes[place] = _Route(proxies)
+        else:
+            del self._routes[place]
 
     # Samples
 
@@ -205,7 +217,7 @@ class StatefulWriter:
         self.last = number = self.last + 1
         kept = self.qos.transient_local if is_kept is None else is_kept
         change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, kept)
-        reliable = any(route.reliable for route in self._routes)
+        reliable = any(route.reliable for route in self._routes.values())
         if kept or reliable:
             self._history[number] = change
             self._kept_bytes += change.size
@@ -213,7 +225,7 @@ class StatefulWriter:
             self._trim()
         if self._routes:
             final = not self._reminds(change)
-            for route in self._routes:
+            for route in self._routes.values():
                 beats = self._route_beats(route, final=final) if route.reliable else b""
                 self._send_change(route.address, route.head, route.entity, change, beats)
             if reliable:
@@ -303,14 +315,14 @@ class StatefulWriter:
             self.due = now + self._delay
 
     def _behind(self) -> bool:
-        return any(proxy.acked <= self.last for route in self._routes for proxy in route.reliable)
+        return any(proxy.acked <= self.last for route in self._routes.values() for proxy in route.reliable)
 
     def tick(self, now: float) -> None:
         """Remind readers that have not acknowledged everything. With none, nothing is sent: an idle writer is quiet."""
         if now < self.due:
             return
         self.due = math.inf
-        for route in self._routes:
+        for route in self._routes.values():
             if any(proxy.acked <= self.last for proxy in route.reliable):
                 self._send(route.address, [route.head, self._route_beats(route, final=False)], False)
                 self._delay = min(2 * self._delay, _HEARTBEAT_SLOWEST)
@@ -350,7 +362,7 @@ class StatefulWriter:
             return
         if change is None or number < proxy.first:
             self._tell_gone(proxy, [number])
-        elif missing:
+        elif missing and self._may_repair(now, proxy, len(missing) * FRAGMENT):
             beat = self._beat(guid[12:], proxy.first, final=False)
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
         self._expect(now)
@@ -364,6 +376,8 @@ class StatefulWriter:
             if change is None or number < proxy.first:
                 gone.append(number)
             elif now >= proxy.repaired.get(number, 0.0) and (not again or size + change.size <= _REPAIR_BYTES):
+                if not self._may_repair(now, proxy, change.size):
+                    break
                 again.append(change)
                 size += change.size
                 if change.size > fragment_of(proxy.address):
@@ -372,6 +386,14 @@ class StatefulWriter:
             self._tell_gone(proxy, gone)
         self._resend(now, proxy, again)
         self._expect(now)
+
+    def _may_repair(self, now: float, proxy: ReaderProxy, size: int) -> bool:
+        """Return whether a reader may get so many bytes again: what it does not get, it requests again."""
+        until = max(proxy.repaired_until, now)
+        if until - now > _REPAIR_BYTES / _REPAIR_RATE:
+            return False
+        proxy.repaired_until = until + size / _REPAIR_RATE
+        return True
 
     def _resend(self, now: float, proxy: ReaderProxy, changes: Sequence[Change]) -> None:
         """Send samples again, several small ones in a datagram, and a heartbeat behind them that requests an answer."""
@@ -423,7 +445,7 @@ class StatefulWriter:
         """Drop the samples that are kept only until every reader has them."""
         if not self._passing:
             return
-        acked = min((proxy.acked for route in self._routes for proxy in route.reliable), default=self.last + 1)
+        acked = min((proxy.acked for route in self._routes.values() for proxy in route.reliable), default=self.last + 1)
         gone = []
         for number, change in self._history.items():
             if number >= acked:
