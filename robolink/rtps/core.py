@@ -16,7 +16,7 @@ from robolink.rtps.announcements import EndpointData, ParticipantData
 from robolink.rtps.discovery import Discovery, Remote, Resolve, fits, gone, greeting
 from robolink.rtps.ids import RtpsError
 from robolink.rtps.parameters import Buffer, Locator
-from robolink.rtps.reader import StatefulReader
+from robolink.rtps.reader import Room, StatefulReader
 from robolink.rtps.submessages import (
     AckNack,
     Data,
@@ -36,6 +36,9 @@ from robolink.rtps.writer import Send, StatefulWriter
 Sink = Callable[[bytes, Info], object]
 OnMatch = Callable[[Endpoint, bool], object]
 Accepts = Callable[[Endpoint], bool]
+
+MOST_MATCHES = 2_000
+"""Endpoints of others that one of ours is matched with. Those beyond are left out: each costs time again and again."""
 
 _EVERYBODY = bytes(ids.PREFIX_BYTES)
 _DISCOVERY_WRITERS = {ids.PUBLICATIONS_WRITER, ids.SUBSCRIPTIONS_WRITER}
@@ -59,8 +62,9 @@ class LocalReader(StatefulReader):
         deliver: Callable[[Buffer, Info], object],
         accepts: Accepts | None,
         on_match: OnMatch | None,
+        room: Room,
     ) -> None:
-        super().__init__(data.guid, data.qos, send, deliver)
+        super().__init__(data.guid, data.qos, send, deliver, room)
         self.data, self.accepts, self.on_match = data, accepts, on_match
 
 
@@ -94,7 +98,8 @@ class Core:
         """Datagrams that were not RTPS, or contradicted themselves."""
         self._me, self._send = me, send
         self._on_peer, self._on_endpoint = on_peer, on_endpoint
-        self._discovery = Discovery(me, network, send, self._peer_changed, self._remote_changed)
+        self._room = Room()
+        self._discovery = Discovery(me, network, send, self._peer_changed, self._remote_changed, self._room)
         self._writers: dict[bytes, StatefulWriter] = {}
         """By entity id."""
         self._readers_of: dict[bytes, list[StatefulReader]] = {}
@@ -175,7 +180,7 @@ class Core:
         def deliver(payload: Buffer, info: Info) -> None:
             add((sink, payload, info))
 
-        reader = LocalReader(data, self._send, deliver, accepts, on_match)
+        reader = LocalReader(data, self._send, deliver, accepts, on_match, self._room)
         self._add(now, reader)
         return reader
 
@@ -206,7 +211,8 @@ class Core:
                 self._unmatch(local, guid)
         else:
             del self._writers[local.entity]
-            local.readers.clear()
+            for guid in [*local.readers]:
+                local.unmatch(guid)
         self._busy.discard(local)
         self._discovery.withdraw(now, data.guid, is_writer=data.is_writer)
         self._arm_discovery()
@@ -250,12 +256,16 @@ class Core:
             # Topics with keys have other kinds; a sample without a key would be of no instance there.
             if endpoint.guid[-1] != ids.KEYLESS_READER or not fits(local.qos, qos):
                 return
+            if len(local.readers) >= MOST_MATCHES:
+                return
             wants_old = qos.transient_local
             local.match(now, endpoint.guid, remote.address, remote.head, reliable=qos.reliable, wants_old=wants_old)
         else:
             if endpoint.guid[-1] != ids.KEYLESS_WRITER or not fits(qos, local.qos):
                 return
             if local.accepts is not None and not local.accepts(endpoint):
+                return
+            if len(local.writers) >= MOST_MATCHES:
                 return
             base = greeting(endpoint.vendor)
             local.match(now, endpoint.guid, remote.address, remote.head, reliable=qos.reliable, base=base)

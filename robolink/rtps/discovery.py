@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from robolink.rtps import ids
 from robolink.rtps.announcements import (
+    MOST_ANNOUNCED,
     EndpointData,
     ParticipantData,
     encode_endpoint,
@@ -23,7 +24,7 @@ from robolink.rtps.announcements import (
 )
 from robolink.rtps.ids import RtpsError
 from robolink.rtps.parameters import Buffer, Locator
-from robolink.rtps.reader import StatefulReader
+from robolink.rtps.reader import Room, StatefulReader
 from robolink.rtps.submessages import (
     Data,
     Inline,
@@ -109,6 +110,7 @@ class Discovery:
         send: Send,
         on_peer: Callable[[Peer, bool], object],
         on_remote: Callable[[Remote, bool], object],
+        room: Room,
     ) -> None:
         """Begin with nobody known.
 
@@ -118,6 +120,7 @@ class Discovery:
             send: gets what is to be sent.
             on_peer: is called with a participant that came (again, if what it says of itself changed) or went.
             on_remote: the same for endpoints.
+            room: what may wait at all readers of the participant.
         """
         self.peers: dict[bytes, PeerState] = {}
         self.remotes: dict[bytes, Remote] = {}
@@ -140,8 +143,11 @@ class Discovery:
         self.writers = {True: publications, False: subscriptions}
         """Those that announce our writers (True) and readers."""
         self.readers = {
-            True: StatefulReader(me.prefix + ids.PUBLICATIONS_READER, _BUILTIN_QOS, send, self._on_publication),
-            False: StatefulReader(me.prefix + ids.SUBSCRIPTIONS_READER, _BUILTIN_QOS, send, self._on_subscription),
+            is_writer: StatefulReader(me.prefix + entity, _BUILTIN_QOS, send, take, room, MOST_ANNOUNCED)
+            for is_writer, entity, take in (
+                (True, ids.PUBLICATIONS_READER, self._on_publication),
+                (False, ids.SUBSCRIPTIONS_READER, self._on_subscription),
+            )
         }
         self._now = 0.0
 
@@ -213,7 +219,7 @@ class Discovery:
             # Only one process can have a port: the one before is gone without a word, and its lease need not run out.
             # (Participants of one process share a port with Cyclone.)
             self.lose(before)
-        if len(self.peers) >= MOST_PEERS:
+        if len(self.peers) >= MOST_PEERS and not self._lose_a_silent_one():
             self.refused += 1
             return
         default = self._network.choose(said.default, source) or metatraffic
@@ -230,6 +236,18 @@ class Discovery:
         for is_writer, writer in ((True, ids.PUBLICATIONS_WRITER), (False, ids.SUBSCRIPTIONS_WRITER)):
             base = greeting(said.vendor)
             self.readers[is_writer].match(now, said.prefix + writer, metatraffic, head, reliable=True, base=base)
+
+    def _lose_a_silent_one(self) -> bool:
+        """Forget the first participant that has never said what it has; return whether there was one.
+
+        So whoever announces thousands that do not exist keeps nobody out who does.
+        """
+        for prefix in self.peers:
+            proxies = (reader.writers.get(prefix + reader.entity[:3] + b"\xc2") for reader in self.readers.values())
+            if not any(proxy is not None and proxy.is_known for proxy in proxies):
+                self.lose(prefix)
+                return True
+        return False
 
     def lose(self, prefix: bytes) -> None:
         """Forget a participant and all it has."""

@@ -17,9 +17,11 @@ from robolink.rtps.writer import Send
 MOST_WAITING = 4_096
 MOST_WAITING_BYTES = 256 << 20
 """What may wait for an earlier sample, of each writer. What arrives beyond it is dropped, and requested again later."""
+MOST_HELD = 1 << 30
+"""Bytes that may wait at all of a participant's readers. Beyond it, the writer of which most waits loses that."""
 LARGEST_SAMPLE = 1 << 30
 SMALLEST_FRAGMENT = 256
-"""Bytes. What claims to be larger, or comes in smaller pieces, is dropped: each piece costs some 100 bytes more."""
+"""Bytes. What claims to be larger, or comes in smaller pieces, is passed over: each piece costs some 100 bytes more."""
 HIGHEST_NUMBER = 1 << 62
 """Nobody writes so many samples; from here on, sums would not fit into what is sent."""
 
@@ -51,6 +53,41 @@ class _Parts:
         """Return the first missing fragment, and those behind it that one request can name."""
         first = next((n for n in range(1, self.total + 1) if n not in self.pieces), self.total + 1)
         return [n for n in range(first, min(first + MOST_IN_SET, self.total + 1)) if n not in self.pieces]
+
+
+class Room:
+    """What waits at all readers of a participant together, for an earlier sample or for more fragments."""
+
+    def __init__(self, most: int = MOST_HELD) -> None:
+        self.used = 0
+        self._most = most
+        self._holders: set[WriterProxy] = set()
+
+    def take(self, proxy: WriterProxy, size: int) -> bool:
+        """Return whether so many bytes more may wait of a writer; they are counted then."""
+        if self.used + size > self._most and not self._clear_for(proxy, size):
+            return False
+        self.used += size
+        proxy.bytes += size
+        self._holders.add(proxy)
+        return True
+
+    def give_back(self, proxy: WriterProxy, size: int) -> None:
+        """Count bytes of a writer that wait no longer."""
+        self.used -= size
+        proxy.bytes -= size
+        if not proxy.bytes:
+            self._holders.discard(proxy)
+
+    def _clear_for(self, proxy: WriterProxy, size: int) -> bool:
+        # Who fills the room with what will never be whole must not keep the others out.
+        largest = max(self._holders, key=lambda each: each.bytes, default=proxy)
+        if largest is proxy:
+            return False
+        largest.waiting.clear()  # what is reliable is requested again
+        largest.parts.clear()
+        self.give_back(largest, largest.bytes)
+        return self.used + size <= self._most
 
 
 class WriterProxy:
@@ -104,7 +141,15 @@ class WriterProxy:
 class StatefulReader:
     """A reader: each writer's samples come out in order and once; of reliable ones all, if the reader is reliable."""
 
-    def __init__(self, guid: bytes, qos: Qos, send: Send, deliver: Deliver) -> None:
+    def __init__(
+        self,
+        guid: bytes,
+        qos: Qos,
+        send: Send,
+        deliver: Deliver,
+        room: Room | None = None,
+        largest: int = LARGEST_SAMPLE,
+    ) -> None:
         """Make a reader without writers.
 
         Args:
@@ -112,6 +157,8 @@ class StatefulReader:
             qos: what it requests.
             send: gets what is to be sent.
             deliver: gets the samples.
+            room: what may wait, together with the participant's other readers.
+            largest: bytes of a sample; larger ones are passed over.
         """
         self.guid, self.qos = guid, qos
         self.entity = guid[12:]
@@ -119,6 +166,8 @@ class StatefulReader:
         self.due = math.inf
         """When `tick` is to be called."""
         self._send, self._deliver = send, deliver
+        self._room = Room() if room is None else room
+        self._largest = largest
 
     # Writers
 
@@ -140,7 +189,11 @@ class StatefulReader:
 
     def unmatch(self, guid: bytes) -> bool:
         """Forget a writer. Returns whether it was known."""
-        return self.writers.pop(guid, None) is not None
+        proxy = self.writers.pop(guid, None)
+        if proxy is None:
+            return False
+        self._room.give_back(proxy, proxy.bytes)
+        return True
 
     # What writers send
 
@@ -163,9 +216,9 @@ class StatefulReader:
     def _hold(self, now: float, proxy: WriterProxy, payload: Buffer | None, info: Info) -> None:
         """Keep a sample that came too early, and request what is missing before it."""
         size = len(payload) if payload is not None else 0
-        if len(proxy.waiting) < MOST_WAITING and proxy.bytes + size <= MOST_WAITING_BYTES:
+        is_crowded = len(proxy.waiting) >= MOST_WAITING or proxy.bytes + size > MOST_WAITING_BYTES
+        if not is_crowded and self._room.take(proxy, size):
             proxy.waiting[info.number] = None if payload is None else (payload, info)
-            proxy.bytes += size
         is_hole = info.number > proxy.last + 1
         proxy.last = max(proxy.last, info.number)
         if not proxy.is_known and not self.qos.transient_local:
@@ -207,16 +260,20 @@ class StatefulReader:
         # The last in the row begins inside the sample: `parse` has seen to it.
         for at in range(0, len(payload), size):
             fragment = fragments.first + at // size
-            if fragment not in parts.pieces:
-                parts.pieces[fragment] = piece = bytes(payload[at : at + size])
-                proxy.bytes += len(piece)
+            piece = payload[at : at + size]
+            if fragment not in parts.pieces and self._room.take(proxy, len(piece)):
+                parts.pieces[fragment] = bytes(piece)
 
     def _begin(self, now: float, proxy: WriterProxy, fragments: DataFrag, info: Info) -> _Parts | None:
         """Return room for the fragments of another sample; None if there is not any."""
         size, number = fragments.sample_size, info.number
         is_small = fragments.fragment_size < min(SMALLEST_FRAGMENT, size)
+        if size > self._largest or is_small:
+            # As if it did not exist: else it would be requested for ever, and nothing behind it would be delivered.
+            self.on_data(now, proxy.guid, None, info)
+            return None
         is_crowded = number != proxy.next and proxy.bytes + size > MOST_WAITING_BYTES
-        if size > LARGEST_SAMPLE or is_small or is_crowded or len(proxy.parts) >= MOST_WAITING:
+        if is_crowded or len(proxy.parts) >= MOST_WAITING:
             return None
         if not proxy.reliable:
             # One newer than two that are not whole: what is missing of the oldest will hardly come any more.
@@ -283,13 +340,13 @@ class StatefulReader:
     def _release(self, proxy: WriterProxy, number: int) -> None:
         item = proxy.waiting.pop(number)
         if item is not None:
-            proxy.bytes -= len(item[0])
+            self._room.give_back(proxy, len(item[0]))
             self._deliver(*item)
 
     def _forget(self, proxy: WriterProxy, number: int) -> None:
         parts = proxy.parts.pop(number, None)
         if parts is not None:
-            proxy.bytes -= sum(map(len, parts.pieces.values()))
+            self._room.give_back(proxy, sum(map(len, parts.pieces.values())))
 
     # Requests
 
@@ -297,7 +354,7 @@ class StatefulReader:
         """Request again what was requested and has not come."""
         if now < self.due:
             return
-        self.due = math.inf
+        due = math.inf
         for proxy in self.writers.values():
             if now >= proxy.due:
                 proxy.due = math.inf
@@ -306,7 +363,9 @@ class StatefulReader:
                 else:
                     self._greet(now, proxy)
                 self._request_fragments(now, proxy)
-            self.due = min(self.due, proxy.due)
+            if proxy.due < due:
+                due = proxy.due
+        self.due = due
 
     def _wake(self, proxy: WriterProxy, when: float) -> None:
         proxy.due = min(proxy.due, when)

@@ -6,7 +6,7 @@ import pytest
 
 from robolink.rtps import Qos, ids
 from robolink.rtps.discovery import MOST_PEERS
-from robolink.rtps.submessages import AckNack, Data, Heartbeat, encode_data, encode_header, parse
+from robolink.rtps.submessages import AckNack, Data, Heartbeat, encode_data, encode_header, encode_heartbeat, parse
 from tests.support.rtps_network import HOST, Faults, Network, numbers, sample
 
 
@@ -232,13 +232,31 @@ def test_more_participants_than_allowed_are_not_met() -> None:
     network = Network()
     us, other = network.join(), network.join()
     announcement = other.core._discovery._announcement
-    for number in range(MOST_PEERS + 50):
-        prefix = ids.VENDOR_ROBOLINK + number.to_bytes(10, "big")
-        raw = announcement.replace(other.core.prefix, prefix)
+
+    def come(number: int) -> None:
+        raw = announcement.replace(other.core.prefix, ids.VENDOR_ROBOLINK + number.to_bytes(10, "big"))
         port = other.metatraffic[1].to_bytes(4, "little")
         us.core.receive(network.now, raw.replace(port, (20_000 + number).to_bytes(4, "little")), (HOST, 9))
+
+    def talk(number: int) -> None:
+        beat = encode_heartbeat(ids.PUBLICATIONS_READER, ids.PUBLICATIONS_WRITER, 1, 0, 1)
+        us.core.receive(network.now, encode_header(ids.VENDOR_ROBOLINK + number.to_bytes(10, "big")) + beat, (HOST, 9))
+
+    come(0)
+    talk(0)
+    for number in range(1, MOST_PEERS + 50):
+        come(number)
+    # Those that say nothing but that they are there make room: most likely they are not.
     assert len(us.core.peers()) == MOST_PEERS
+    assert us.core._discovery.refused == 0
+    there = [int.from_bytes(peer.prefix[2:], "big") for peer in us.core.peers()]
+    assert there == [0, *range(51, MOST_PEERS + 50)]
+    for number in there:
+        talk(number)
+    for number in range(1, 51):
+        come(number)
     assert us.core._discovery.refused == 50
+    assert [int.from_bytes(peer.prefix[2:], "big") for peer in us.core.peers()] == there
 
 
 def test_an_idle_participant_sends_and_wakes_up_a_few_times_a_second() -> None:
