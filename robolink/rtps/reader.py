@@ -29,8 +29,13 @@ _ASK_AFTER, _ASK_SLOWEST = 0.01, 1.0
 """Seconds until what was requested is requested again; twice as long each time, up to the second."""
 _GREET_AFTER, _GREET_SLOWEST = 0.1, 30.0
 """The same for the question what a writer has at all. One that never answers does not know us as a match."""
-_FRAGMENTS_LATE = 0.02
-"""Seconds after a fragment in which the next has to arrive."""
+_FRAGMENTS_LATE, _FRAGMENTS_DUE = 0.02, 0.005
+"""Seconds after a fragment in which the next has to arrive; the same after a heartbeat for its sample. (Fast DDS sends
+one with each fragment, so a heartbeat alone does not mean that all have left.)"""
+_FEW_FRAGMENTS = 6
+"""That are requested even if fewer came."""
+_SAME_ANSWER = 0.005
+"""Seconds in which an acknowledgement is not repeated: one for each fragment would leave no time to receive them."""
 
 Deliver = Callable[[Buffer, Info], object]
 
@@ -38,7 +43,7 @@ Deliver = Callable[[Buffer, Info], object]
 class _Parts:
     """A sample of which fragments have arrived."""
 
-    __slots__ = ("ask_at", "delay", "fragment_size", "info", "pieces", "size", "total")
+    __slots__ = ("ask_at", "delay", "fragment_size", "had", "info", "pieces", "size", "total", "touched", "until")
 
     def __init__(self, info: Info, fragment_size: int, size: int) -> None:
         self.info, self.fragment_size, self.size = info, fragment_size, size
@@ -48,6 +53,17 @@ class _Parts:
         self.ask_at = 0.0
         """Before this, missing fragments may still be under way."""
         self.delay = _FRAGMENTS_LATE
+        self.until = self.total
+        """Last of the fragments that are under way: once it is here, what is missing of them was lost."""
+        self.had: int | None = None
+        """How many were here at the last request; None: there was none."""
+        self.touched = 0.0
+        """When the last fragment came."""
+
+    @property
+    def grows(self) -> bool:
+        """Whether fragments came since the last request, if there was one."""
+        return self.had is None or len(self.pieces) > self.had
 
     def missing(self) -> list[int]:
         """Return the first missing fragment, and those behind it that one request can name."""
@@ -94,6 +110,8 @@ class WriterProxy:
     """What a reader knows of a writer."""
 
     __slots__ = (
+        "acked",
+        "acked_at",
         "address",
         "asked",
         "base",
@@ -127,6 +145,8 @@ class WriterProxy:
         self.bytes = 0
         """Of `waiting` and `parts`."""
         self.serial = 0
+        self.acked, self.acked_at = 0, -math.inf
+        """Before which number all was acknowledged, and when."""
         self.asked = 0
         """The highest number that was requested."""
         self.delay = _GREET_AFTER
@@ -247,10 +267,11 @@ class StatefulReader:
             payload = b"".join([parts.pieces[n] for n in range(1, parts.total + 1)])
             self.on_data(now, guid, payload, parts.info)
         elif proxy.reliable:
-            if parts.total in parts.pieces:
-                # The last is here, and one before it is not. (Asked only once: then they are waited for.)
-                self._request_fragments(now, proxy, ended=number)
-            parts.ask_at = max(parts.ask_at, now + _FRAGMENTS_LATE)
+            parts.touched = now
+            if parts.grows:
+                parts.ask_at = now + _FRAGMENTS_LATE
+                if parts.until in parts.pieces:
+                    self._nack(now, proxy, number, parts)
             self._wake(proxy, parts.ask_at)
 
     def _add(self, proxy: WriterProxy, parts: _Parts, fragments: DataFrag) -> None:
@@ -298,8 +319,10 @@ class StatefulReader:
             self._skip(proxy, first)
         proxy.last = max(proxy.last, last)
         self._request(now, proxy, answer=not final)
-        if proxy.parts:
-            self._request_fragments(now, proxy, ended=last)
+        for number, parts in proxy.parts.items():
+            if number <= last and parts.grows:
+                parts.ask_at = min(parts.touched + _FRAGMENTS_LATE, now + _FRAGMENTS_DUE)
+                self._wake(proxy, parts.ask_at)
 
     def on_gap(self, now: float, guid: bytes, first: int, base: int, others: Sequence[int]) -> None:
         """Learn that samples will not come: those from `first` to `base` - 1, and the others."""
@@ -392,7 +415,8 @@ class StatefulReader:
             self._acknack(proxy, proxy.next, missing, final=False)
             self._wake(proxy, now + proxy.delay)
             proxy.delay = min(2 * proxy.delay, _ASK_SLOWEST)
-        elif answer and not missing:
+        elif answer and not missing and (proxy.next != proxy.acked or now >= proxy.acked_at + _SAME_ANSWER):
+            proxy.acked, proxy.acked_at = proxy.next, now
             self._acknack(proxy, proxy.next, [], final=True)
 
     def _missing(self, proxy: WriterProxy) -> list[int]:
@@ -416,11 +440,18 @@ class StatefulReader:
         if not proxy.reliable:
             return
         for number, parts in proxy.parts.items():
-            is_late = now >= parts.ask_at
-            if is_late or (number <= ended and parts.delay == _FRAGMENTS_LATE):
-                proxy.serial += 1
-                raw = encode_nack_frag(self.entity, proxy.guid[12:], number, parts.missing(), proxy.serial & 0x7FFFFFFF)
-                self._send(proxy.address, [proxy.head, raw], False)
-                parts.ask_at = now + parts.delay
-                parts.delay = min(2 * parts.delay, _ASK_SLOWEST)
+            if now >= parts.ask_at or (number <= ended and parts.had is None):
+                self._nack(now, proxy, number, parts)
             self._wake(proxy, parts.ask_at)
+
+    def _nack(self, now: float, proxy: WriterProxy, number: int, parts: _Parts) -> None:
+        came = len(parts.pieces) - (parts.had or 0)
+        # Not many more than came the last time: they come in one burst, for which the socket's buffer may have no room.
+        missing = parts.missing()[: max(came, _FEW_FRAGMENTS)]
+        proxy.serial += 1
+        raw = encode_nack_frag(self.entity, proxy.guid[12:], number, missing, proxy.serial & 0x7FFFFFFF)
+        self._send(proxy.address, [proxy.head, raw], False)
+        # As long as each request brings something, the next does not wait longer.
+        parts.delay = _FRAGMENTS_LATE if parts.grows else min(2 * parts.delay, _ASK_SLOWEST)
+        parts.until, parts.had = missing[-1], len(parts.pieces)
+        parts.ask_at = now + parts.delay

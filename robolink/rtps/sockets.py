@@ -135,7 +135,7 @@ class Sockets:
         self._far = [pair.metatraffic for pair in self._pairs[1:]]
         self._group = self._join()
         self._paced = 0
-        self._buffer = bytearray(_LARGEST)
+        self._views: list[memoryview] = []
         self._waking = threading.Event()
         self._selector = selectors.DefaultSelector()  # not select(): it knows no file numbers above 1023
         for each in self._receivers():
@@ -233,26 +233,32 @@ class Sockets:
             self._drain(key.data, take)
 
     def _drain(self, sock: socket.socket, take: Take) -> None:
-        view = memoryview(self._buffer)
-        for _ in range(_AT_ONCE):
+        """Empty a socket, then give away what it had: its buffer has room for a few large datagrams only."""
+        came: list[tuple[memoryview, Locator]] = []
+        while len(came) < _AT_ONCE:
+            if len(came) == len(self._views):
+                self._views.append(memoryview(bytearray(_LARGEST)))
+            view = self._views[len(came)]
             try:
                 size, source = sock.recvfrom_into(view)
             except BlockingIOError:
-                return
+                break
             except ConnectionResetError:
                 # Windows: somebody to whom we sent was not there. (SIO_UDP_CONNRESET would turn that off, but Python's
                 # `ioctl` does not take it.) The next datagram may well be good.
                 continue
             except OSError as error:  # the interface is gone, or we are closed
                 self._count(error)
-                return
+                break
             if not size:
                 continue  # from `wake`
             if self.bounds.admits(source[0]):
-                self.counts.received += 1
-                take(view[:size], source)
+                came.append((view[:size], source))
             else:
                 self.counts.strangers += 1
+        self.counts.received += len(came)
+        for datagram, source in came:
+            take(datagram, source)
 
     def wake(self) -> None:
         """Make `receive` return soon, from any thread."""

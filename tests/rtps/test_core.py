@@ -19,6 +19,7 @@ from robolink.rtps.submessages import (
     encode_data_frag,
     encode_gap,
     encode_header,
+    encode_heartbeat,
 )
 from robolink.rtps.writer import FRAGMENT, MOST_KEPT
 from tests.support.big_endian import big_endian
@@ -401,6 +402,47 @@ def test_a_lost_fragment_is_requested_when_the_last_one_comes() -> None:
     network.run(0.002)
     assert numbers(got) == [0]
     assert [nack.missing for nack in network.submessages(NackFrag)] == [[3]]
+
+
+def test_a_large_sample_gets_through_a_small_buffer() -> None:
+    """A burst of which six datagrams of 64 kB have room, as in the buffer that a socket has by default."""
+    network = Network()
+    a, b, writer, _, got = met(network)
+    came: list[float] = []
+
+    def is_full(raw: bytes, address: Locator) -> bool:
+        if address != b.default or len(raw) < 10_000:
+            return False
+        came[:] = [at for at in came if at > network.now - 0.00015]
+        if len(came) < 6:
+            came.append(network.now)
+            return False
+        return True
+
+    network.faults = Faults(is_lost=is_full)
+    a.put(writer, sample(0, 6_200_000))
+    network.run(0.5, until=lambda: bool(got))
+    assert len(got) == 1
+    fragments = len(network.submessages(DataFrag))
+    assert fragments < 2.5 * 6_200_000 / FRAGMENT  # what it has no room for is not requested again and again
+
+
+def test_a_heartbeat_with_each_fragment_is_answered_once() -> None:
+    """Fast DDS sends one: an answer to each would take the time in which the next fragments are received."""
+    network = Network()
+    a, b, writer, reader, got = met(network)
+    payload, head = sample(0, 50 * FRAGMENT), encode_header(a.core.prefix)
+    for fragment in range(1, 51):
+        piece = encode_data_frag(reader.entity, writer.entity, 1, fragment, FRAGMENT, payload)
+        beat = encode_heartbeat(reader.entity, writer.entity, 1, 1, 100 + fragment)
+        b.core.receive(network.now, head + b"".join(piece), a.default)
+        b.core.receive(network.now, head + beat, a.default)
+        network.run(0.00005)
+    b.call()
+    assert numbers(got) == [0]
+    answers = network.submessages(AckNack)
+    assert [(each.base, each.missing) for each in answers] == [(1, []), (2, [])]
+    assert not network.submessages(NackFrag)
 
 
 def test_a_gap_that_claims_everything_costs_nothing() -> None:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from robolink.rtps.parameters import Locator
 from robolink.rtps.reach import GROUP, LOOPBACK, Range, Reach, ReachError, multicast_port, ports
 from robolink.rtps.sockets import Sockets
 from tests.support.domains import free_dds_domain
@@ -85,6 +86,23 @@ def test_datagrams_come_through_at_both_ports(pair: tuple[Sockets, Sockets]) -> 
     one.send(other.metatraffic, [b"whole"])
     one.send(other.default, [b"in ", memoryview(b"some "), bytearray(b"pieces")])
     assert sorted(receive(other, 2)) == [(b"in some pieces", one.metatraffic), (b"whole", one.metatraffic)]
+
+
+def test_a_socket_is_emptied_before_anything_is_done_with_what_it_had(pair: tuple[Sockets, Sockets]) -> None:
+    one, other = pair
+    for number in range(5):
+        one.send(other.default, [bytes([number])])
+    found: list[bytes] = []
+
+    def take(raw: memoryview, source: Locator) -> None:
+        with pytest.raises(BlockingIOError):
+            other._local.user.recv(1)  # the buffer has room for what comes meanwhile
+        found.append(bytes(raw))
+
+    end = time.monotonic() + 5
+    while len(found) < 5 and time.monotonic() < end:
+        other.receive(0.1, take)
+    assert found == [bytes([number]) for number in range(5)]
 
 
 def test_the_largest_datagram_comes_through(pair: tuple[Sockets, Sockets]) -> None:
