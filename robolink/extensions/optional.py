@@ -78,6 +78,11 @@ def part(target: str, what: str) -> Any:
     return getattr(importlib.import_module(module), name)
 
 
+def check_page() -> None:
+    """Raise MissingPartError if this installation lacks the page for the browser."""
+    check(PAGE, "'robolink view'")
+
+
 def page(node: Any, *, port: int | None = None, exercises: Any = None) -> AbstractContextManager[Page]:
     """Return the page for the browser, which is served while the block runs.
 

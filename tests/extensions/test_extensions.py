@@ -7,6 +7,7 @@ import pickle
 import re
 import subprocess
 import sys
+import zipfile
 from importlib import import_module
 from pathlib import Path
 
@@ -368,6 +369,12 @@ def test_problems_name_what_is_broken_and_what_is_there_twice() -> None:
     )
 
 
+@pytest.mark.usefixtures("package")
+def test_a_verb_that_robolink_has_is_a_problem() -> None:
+    taken = "demo-extension adds 'topic.list' (robolink.commands), which robolink has: that one is taken"
+    assert [each for each in COMMANDS.problems() if "'topic.nodes'" in each or "'topic.list'" in each] == [taken]
+
+
 def test_entry_points_are_those_of_the_path_of_now(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "hello" in COMMANDS.added()
     monkeypatch.setattr(sys, "path", [each for each in sys.path if each != str(package)])
@@ -389,3 +396,21 @@ def test_a_known_command_reads_no_entry_points(package: Path) -> None:
         "assert 'importlib.metadata' not in sys.modules, 'read'"
     )
     subprocess.run([sys.executable, "-c", program], check=True, env={"PYTHONPATH": str(package)}, capture_output=True)
+
+
+@pytest.mark.processes
+def test_help_reads_no_entry_points_where_nobody_adds_a_command() -> None:
+    program = (
+        "import sys\nfrom robolink.cli.main import main\nmain(['--help'])\n"
+        "assert 'importlib.metadata' not in sys.modules, 'read'"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, env={}, capture_output=True)
+
+
+def test_what_is_not_a_folder_may_add_something(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A zip file with a package, for instance, which `importlib.metadata` reads too."""
+    with zipfile.ZipFile(tmp_path / "demo.zip", "w") as packed:
+        packed.writestr("zipped-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: zipped\nVersion: 1.0\n")
+        packed.writestr("zipped-1.0.dist-info/entry_points.txt", "[robolink.commands]\nzipped = zipped:app\n")
+    monkeypatch.syspath_prepend(tmp_path / "demo.zip")
+    assert "zipped" in COMMANDS.added()

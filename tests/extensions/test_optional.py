@@ -42,6 +42,22 @@ def test_a_command_that_is_not_there_is_one_line(capsys: pytest.CaptureFixture[s
     assert "\n  view " not in listed
 
 
+@pytest.mark.annex("view")
+def test_a_command_without_its_page_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """robolink/view alone was deleted, and its command is there."""
+    from robolink.cli.view.ros_programs import rviz2
+
+    monkeypatch.setattr(optional, "PAGE", f"{GONE}:page_of")
+    assert main(["view", "--no-browser"]) == 1
+    assert main(["view", "--bag", "gone.mcap"]) == 1
+    error = "robolink: 'robolink view' is not part of this installation of robolink\n"
+    assert capsys.readouterr().err == 2 * error
+    with pytest.raises(MissingPartError):
+        rviz2()
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("without")
 def test_what_needs_a_page_says_that_there_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

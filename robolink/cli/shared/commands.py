@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
@@ -82,7 +83,15 @@ def _app(entry: EntryPoint) -> typer.Typer:
     return app
 
 
-COMMANDS: Registry[Entry | typer.Typer] = Registry("robolink.commands", lambda: NOUNS, _app)
+def _is_own(name: str) -> bool:
+    noun, _, verb = name.partition(".")
+    if noun not in NOUNS or not is_here(NOUNS[noun].module):
+        return False
+    app: typer.Typer = importlib.import_module(NOUNS[noun].module).app
+    return not verb or verb in getattr(typer.main.get_command(app), "commands", ())
+
+
+COMMANDS: Registry[Entry | typer.Typer] = Registry("robolink.commands", lambda: NOUNS, _app, _is_own)
 """Registry of the commands, by NAME for a noun and NOUN.VERB for a verb that another package adds."""
 
 

@@ -10,6 +10,7 @@ import typer
 from robolink.cli.shared.options import Enclave
 from robolink.cli.shared.output import tell
 from robolink.cli.shared.page import announce, end_with_the_terminal
+from robolink.extensions.optional import check_page
 
 if TYPE_CHECKING:
     from robolink.view.server import Settings
@@ -64,6 +65,7 @@ def view(
 
     Foxglove, Lichtblick and PlotJuggler connect to the same port, by ws://localhost:8765.
     """
+    check_page()
     from robolink.view.server import Settings
 
     end_with_the_terminal()

@@ -8,6 +8,7 @@ import sys
 import robolink
 from robolink.cli.shared.output import tell
 from robolink.exceptions import ExternalShutdownException
+from robolink.extensions.optional import check_page
 from robolink.running.timebase import VirtualTime
 from robolink.utilities import get_default_context, remove_ros_args
 
@@ -64,6 +65,7 @@ def rqt_robot_steering() -> None:
 
 def _show(program: str, panels: str) -> None:
     """Serve the page until Ctrl-C, and open it; in virtual time nobody looks, and it only waits for its end."""
+    check_page()
     from robolink.cli.view import show_system
     from robolink.view.server import Settings
 
