@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack
 
@@ -59,6 +61,18 @@ def test_nothing_leaves_by_a_third_interface(hosts: Hosts) -> None:
     wait_until(lambda: report(near)["heard"].get("far", 0) > 20, PATIENCE)
     assert report(near)["peers"] == ["far"]
     assert {kind for kind in report(capture) if not kind.startswith(GROUP_REPORTS)} <= {KERNEL}
+
+
+@pytest.mark.skipif(shutil.which("tc") is None, reason="there is no `tc` (iproute2)")
+def test_large_best_effort_samples_pass_a_link_of_20_megabits(hosts: Hosts) -> None:
+    shaped = "tc qdisc add dev cable root tbf rate 20mbit burst 10kb limit 150kb"
+    subprocess.run(["ip", "netns", "exec", hosts.here, *shaped.split()], check=True)
+    rough = ("--interface", "cable", "--rough", "--hertz", "0.001")
+    far, near = hosts.end(hosts.there, "far", *rough), hosts.end(hosts.here, "near", *rough)
+    wait_until(lambda: report(near)["endpoints"] == report(far)["endpoints"] == 2, PATIENCE)
+    heard = report(far)["heard"].get("near", 0)
+    report(near, "burst")
+    wait_until(lambda: report(far)["heard"].get("near", 0) == heard + 5, PATIENCE)
 
 
 def test_static_peers_meet_where_no_multicast_passes() -> None:

@@ -1,9 +1,9 @@
 """Participant of RTPS that obeys its standard input.
 
-    python -m tests.support.rtps_end NAME [--interface I] [--peer P]... [--range R] [--hertz H]
+    python -m tests.support.rtps_end NAME [--interface I] [--peer P]... [--range R] [--hertz H] [--rough]
 
-It writes and reads one topic, and prints `ready`. For each line it prints as JSON whom it knows, and how many samples
-it has heard from whom; and it writes another burst of samples of all sizes if the line is `burst`.
+It writes and reads one topic, BEST_EFFORT if --rough, and prints `ready`. For each line it prints as JSON whom it
+knows, and how many samples it has heard from whom; it writes another burst of all sizes if the line is `burst`.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ HEADER = b"\0\1\0\0"
 class End:
     """A participant with a writer and a reader."""
 
-    def __init__(self, name: str, reach: Reach) -> None:
+    def __init__(self, name: str, reach: Reach, qos: Qos) -> None:
         self.heard = Counter[str]()
         self.participant = Participant(DOMAIN, name=name, reach=reach)
-        self._writer = self.participant.writer(TOPIC, TYPE, Qos(depth=100))
-        self._reader = self.participant.reader(TOPIC, TYPE, Qos(depth=100), self._hear)
+        self._writer = self.participant.writer(TOPIC, TYPE, qos)
+        self._reader = self.participant.reader(TOPIC, TYPE, qos, self._hear)
         self._name = name.encode()
 
     def _hear(self, payload: bytes, _info: Info) -> None:
@@ -52,9 +52,11 @@ def main() -> None:
     parser.add_argument("--interface", default="")
     parser.add_argument("--peer", action="append", default=[])
     parser.add_argument("--range", type=Range, default=Range.SUBNET)
+    parser.add_argument("--rough", action="store_true")
     parser.add_argument("--hertz", type=float, default=20.0)
     requested = parser.parse_args()
-    end = End(requested.name, Reach(requested.interface, tuple(requested.peer), requested.range))
+    reach = Reach(requested.interface, tuple(requested.peer), requested.range)
+    end = End(requested.name, reach, Qos(reliable=not requested.rough, depth=100))
     print("ready", flush=True)  # noqa: T201
     chosen = selectors.DefaultSelector()
     chosen.register(sys.stdin, selectors.EVENT_READ)
