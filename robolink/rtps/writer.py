@@ -362,7 +362,7 @@ class StatefulWriter:
             return
         if change is None or number < proxy.first:
             self._tell_gone(proxy, [number])
-        elif missing and self._may_repair(now, proxy, len(missing) * FRAGMENT):
+        elif missing and self._may_repair(now, proxy, len(missing) * fragment_of(proxy.address)):
             beat = self._beat(guid[12:], proxy.first, final=False)
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
         self._expect(now)

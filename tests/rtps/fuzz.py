@@ -28,6 +28,8 @@ from tests.support.rtps_network import Faults, Member, Network, numbers, sample
 LATCHED, ALL, BEST_EFFORT = Qos(transient_local=True, depth=3), Qos(depth=0), Qos(reliable=False)
 QOS = {"rt/all": ALL, "rt/latched": LATCHED, "rt/rough": BEST_EFFORT}
 PEER = ids.VENDOR_ROBOLINK + b"the peer.."
+PLACE = 7410
+"""The peer's port for discovery."""
 STEP = 0.001
 """Seconds of virtual time between datagrams."""
 LIFE = 20_000
@@ -54,8 +56,9 @@ class Corpus(NamedTuple):
 def record() -> Corpus:
     """Let a peer talk with another participant, over a network that loses datagrams, and return what it said."""
     network = Network()
-    peer = network.join(prefix=PEER)
-    other = _victim_of(network)
+    peer = network.join(index=0, prefix=PEER)
+    assert peer.metatraffic[1] == PLACE
+    other, _ = _victim_of(network)
     said: list[bytes] = []
     others = [peer.writer(topic, qos) for topic, qos in QOS.items()]
     for topic, qos in QOS.items():
@@ -86,14 +89,16 @@ def record() -> Corpus:
     return Corpus(greeting, [*said, *_rare(), *(swapped(raw) for raw in said if _can_swap(raw))])
 
 
-def _victim_of(network: Network) -> Member:
+def _victim_of(network: Network) -> tuple[Member, list[list[bytes]]]:
+    """Let a participant join; return what its readers get, too."""
     victim = network.join(index=1, prefix=ids.VENDOR_ROBOLINK + b"the victim")
+    got = []
     for topic, qos in QOS.items():
         writer = victim.writer(topic, qos)
         victim.put(writer, sample(1))
         victim.put(writer, sample(2, 3 * FRAGMENT))
-        victim.reader(topic, qos)
-    return victim
+        got.append(victim.reader(topic, qos)[1])
+    return victim, got
 
 
 def _rare() -> list[bytes]:
@@ -214,7 +219,10 @@ class Mutator:
         raw += self._dice.choice(self._corpus)[HEADER_BYTES:]
 
     def _stranger(self, raw: bytearray) -> None:
-        raw[8:20] = ids.VENDOR_ROBOLINK + self._dice.randbytes(10)
+        """Let somebody else say it, who is elsewhere."""
+        prefix = ids.VENDOR_ROBOLINK + self._dice.randbytes(10)
+        place = self._dice.randrange(1024, 65536).to_bytes(4, "little")
+        raw[:] = raw.replace(PEER, prefix).replace(PLACE.to_bytes(4, "little"), place)
 
 
 class Victim:
@@ -222,7 +230,7 @@ class Victim:
 
     def __init__(self, corpus: Corpus) -> None:
         self._network = Network()
-        self.member = _victim_of(self._network)
+        self.member, self._got = _victim_of(self._network)
         self.core: Core = self.member.core
         self._corpus = corpus
         self.longest = 0.0
@@ -252,6 +260,8 @@ class Victim:
         self.most_answered = max(self.most_answered, answer)
         network.sent.clear()
         network._under_way.clear()
+        for got in self._got:
+            got.clear()
         self.member.found.clear()
         self.member.peers.clear()
 
