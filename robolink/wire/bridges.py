@@ -8,8 +8,9 @@ from typing import NamedTuple
 from robolink.exceptions import WireError
 from robolink.wire.keys import format_number, matched, not_too_long, parse_number, quoted
 
-_BRIDGE = "@robolink/bridge"
-_FIELDS = 8
+# Not with an @, which ** does not match: sessions that are confined to loopback let through what ** matches.
+_BRIDGE = "robolink_bridge"
+_FIELDS = 7
 _SESSION = re.compile(r"[0-9a-f]{1,32}")
 _WORD = re.compile(r"[A-Za-z0-9_.-]{1,253}")
 _OTHER = re.compile(r"[^A-Za-z0-9_.-]+")
@@ -40,8 +41,7 @@ def bridge_pattern(domain: int) -> str:
 
 def format_bridge(token: BridgeToken) -> str:
     """Return the text of a bridge's token; what a host's name may not have in a key becomes a dash."""
-    host = _OTHER.sub("-", token.host)[:253] or "-"
-    fields = [token.session, token.mark or token.session, token.network, token.state, host]
+    fields = [token.session, token.mark or token.session, token.network, token.state, _key_name(token.host)]
     matched(_SESSION, token.session, "a session id")
     for each in fields[1:]:
         matched(_WORD, each, "a word")
@@ -53,20 +53,34 @@ def parse_bridge(text: str) -> BridgeToken:
     fields = not_too_long(text, "a token").split("/")
     if len(fields) != _FIELDS or not text.startswith(f"{_BRIDGE}/"):
         raise WireError(f"expected a bridge's token, got {quoted(text)}")
-    domain, session, *words = fields[2:]
+    domain, session, *words = fields[1:]
     mark, network, state, host = (matched(_WORD, each, "a word") for each in words)
     return BridgeToken(parse_number(domain), matched(_SESSION, session, "a session id"), network, host, state, mark)
 
 
-_MARK = re.compile(rb"robolink_bridge=([A-Za-z0-9_.-]{1,253});")
+_MARK = re.compile(rb"robolink_bridge=([0-9a-f]{1,32}),([A-Za-z0-9_.-]{1,253});")
 
 
-def mark_data(mark: str) -> bytes:
-    """Return what a bridge adds to the user data of its participant on DDS, where there are no tokens."""
-    return f"robolink_bridge={mark};".encode()
+class Mark(NamedTuple):
+    """What a bridge adds to the user data of its participant on DDS, where there are no tokens."""
+
+    mark: str
+    """Id of the bridge: its session on the other network."""
+    host: str
+    """Name of the machine that it runs on."""
 
 
-def mark_in(user_data: bytes) -> str:
-    """Return the mark of the bridge whose participant has this user data; "" if it is not one."""
+def mark_data(mark: Mark) -> bytes:
+    """Return the mark as user data."""
+    return f"robolink_bridge={mark.mark},{_key_name(mark.host)};".encode()
+
+
+def mark_in(user_data: bytes) -> Mark | None:
+    """Return the mark in a participant's user data; None if it is not that of a bridge."""
     match = _MARK.search(user_data)
-    return match[1].decode() if match else ""
+    return Mark(match[1].decode(), match[2].decode()) if match else None
+
+
+def _key_name(host: str) -> str:
+    """Return the name of a host as keys have it: what they may not have becomes a dash."""
+    return _OTHER.sub("-", host)[:253] or "-"

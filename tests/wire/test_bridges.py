@@ -15,7 +15,7 @@ TOKEN = BridgeToken(7, "abc", "dds", "robot.local", STARTING, "12ef")
 
 def test_a_token_is_read_as_it_was_written() -> None:
     text = format_bridge(TOKEN)
-    assert text == "@robolink/bridge/7/abc/12ef/dds/starting/robot.local"
+    assert text == "robolink_bridge/7/abc/12ef/dds/starting/robot.local"
     assert parse_bridge(text) == TOKEN
     assert parse_bridge(format_bridge(TOKEN._replace(mark=""))).mark == "abc"
 
@@ -34,10 +34,10 @@ def test_the_pattern_is_that_of_one_domain_and_no_graph_has_them() -> None:
     for text in texts:
         session.announce(text)
     assert session.tokens(bridge_pattern(7)) == texts[:1]
-    assert session.tokens(graph_pattern()) == session.tokens("**") == []
+    assert session.tokens(graph_pattern()) == []
 
 
-@given(st.text() | st.text("@/abdeginrst_01*", max_size=60).map("@robolink/bridge/".__add__))
+@given(st.text() | st.text("@/abdeginrst_01*", max_size=60).map("robolink_bridge/".__add__))
 def test_nonsense_is_refused(text: str) -> None:
     try:
         found = parse_bridge(text)

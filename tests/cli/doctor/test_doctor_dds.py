@@ -11,7 +11,7 @@ from robolink.cli.doctor.dds import Dds, Ways, live_ports, look, receive_buffer,
 from robolink.cli.doctor.dds_checks import dds
 from robolink.cli.doctor.facts import OK, WARNING, Facts, Seen, Settings
 from robolink.extensions.optional import PARTICIPANT, part
-from robolink.wire import BridgeToken, mark_data, mark_in
+from robolink.wire import BridgeToken, Mark, mark_data, mark_in
 from tests.support.domains import free_domain
 
 DOMAIN = 50
@@ -153,8 +153,8 @@ def test_bound_ports_and_the_buffer_are_read(tmp_path: Path) -> None:
 
 
 def test_a_bridge_is_marked_in_its_participants_user_data() -> None:
-    assert mark_in(b"enclave=/;" + mark_data("12ab") + b"\0") == "12ab"
-    assert mark_in(b"enclave=/;") == mark_in(b"robolink_bridge=;") == ""
+    assert mark_in(b"enclave=/;" + mark_data(Mark("12ab", "my host")) + b"\0") == Mark("12ab", "my-host")
+    assert mark_in(b"enclave=/;") == mark_in(b"robolink_bridge=;") is None
 
 
 @pytest.mark.annex("dds")
@@ -167,7 +167,8 @@ def test_a_participant_meets_those_of_ros_2_and_bridges() -> None:
 
 def _meet_on(domain: int) -> None:
     participant = part(PARTICIPANT, "DDS")
-    others = [participant(domain, user_data=data) for data in (b"enclave=/;", b"enclave=/;" + mark_data("ab"), b"")]
+    ros = b"enclave=/;"
+    others = [participant(domain, user_data=data) for data in (ros, ros + mark_data(Mark("ab", "here")), b"")]
     try:
         found = look(domain)
     finally:

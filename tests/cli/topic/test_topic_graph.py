@@ -126,7 +126,7 @@ def test_info_says_which_end_is_behind_a_bridge(node: Node, capsys: Captured) ->
     own = node.context.graph.endpoints(EndpointKind.PUBLISHER, name="/cmd_vel")[0]
     transport.announce(format_token(own._replace(session="b1", node_name="base")))
     transport.announce(format_bridge(BridgeToken(7, "b1", "dds", "turtle.local")))
-    transport.announce("@robolink/bridge/7/nonsense")
+    transport.announce("robolink_bridge/7/nonsense")
     assert main(["topic", "info", "/cmd_vel", "-v"]) == 0
     ends = capsys.readouterr().out.split("Node name: ")[1:]
     line = "Network: DDS, through the bridge on turtle.local"
