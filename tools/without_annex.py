@@ -25,11 +25,14 @@ ROOT = Path(__file__).resolve().parent.parent
 
 ANNEXES = {
     "dds": [
+        "robolink/cli/bridge",
         "robolink/dds",
         "robolink/rtps",
+        "tests/cli/bridge",
         "tests/dds",
         "tests/rtps",
         "tests/support/fake_rtps.py",
+        "tests/support/mirrored.py",
     ],
     "learn": [
         "robolink/learn",

@@ -17,7 +17,18 @@ from robolink.dds.profiles import profile_of
 from robolink.dds.tokens import Tokens
 from robolink.exceptions import WireError
 from robolink.rtps import Endpoint, Peer
-from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken, format_token, gid_of
+from robolink.wire import (
+    NO_HASH,
+    RUNNING,
+    BridgeToken,
+    EndpointKind,
+    EndpointToken,
+    NodeToken,
+    format_bridge,
+    format_token,
+    gid_of,
+    mark_in,
+)
 
 Pair = tuple[bytes, str, str, bool]
 """Half of a service: the participant, the service's name and type, and True for writers."""
@@ -63,6 +74,8 @@ class OtherNodes:
         self._owners: dict[bytes, dict[bytes, _Node]] = {}
         self._shown: dict[bytes, str] = {}
         self._numbers = itertools.count(1)
+        self._bridges: dict[bytes, str] = {}
+        """Tokens of the bridges among the participants, by their prefixes."""
 
     @property
     def is_complete(self) -> bool:
@@ -73,6 +86,7 @@ class OtherNodes:
 
     def on_peer(self, peer: Peer, came: bool) -> None:
         """Note a participant; with it goes all that it had."""
+        self._note_bridge(peer, came)
         if came:
             self.peers[peer.prefix] = peer
             return
@@ -83,6 +97,15 @@ class OtherNodes:
         for table in (self._owners, self._nodes):
             table.pop(peer.prefix, None)
         self.reported.discard(peer.prefix)
+
+    def _note_bridge(self, peer: Peer, came: bool) -> None:
+        """Announce a bridge, whose participant is marked: what it has came through it."""
+        if before := self._bridges.pop(peer.prefix, ""):
+            self._tokens.remove(before)
+        if came and (mark := mark_in(peer.user_data)) is not None:
+            token = BridgeToken(self._domain, peer.prefix.hex(), "zenoh", mark.host, RUNNING, mark.mark)
+            self._bridges[peer.prefix] = text = format_bridge(token)
+            self._tokens.add(text)
 
     def on_endpoint(self, endpoint: Endpoint, came: bool) -> None:
         """Note an endpoint of another participant."""

@@ -29,13 +29,16 @@ _ANY_PORT = 9
 _LOCAL = ("", "SYSTEM_DEFAULT", "LOCALHOST")
 
 
-def open_session(domain: int, environ: Mapping[str, str], enclave: str | None = None) -> DdsTransport:
+def open_session(
+    domain: int, environ: Mapping[str, str], enclave: str | None = None, *, mark: bytes = b""
+) -> DdsTransport:
     """Open a session on DDS.
 
     Args:
         domain: ROS domain id.
         environ: Environment.
         enclave: Enclave that others are told; None is /.
+        mark: What the participant's user data has beside that: a bridge's mark.
 
     Raises:
         TransportError: if settings are wrong, or the domain cannot be joined.
@@ -45,8 +48,9 @@ def open_session(domain: int, environ: Mapping[str, str], enclave: str | None = 
     refuse_security(environ)
     reach = reach_of(environ)
 
-    def join(number: int, **options: object) -> Participant:
-        return Participant(number, reach=reach, **options)  # type: ignore[arg-type]
+    def join(number: int, *, user_data: bytes, **options: object) -> Participant:
+        told = user_data.rstrip(b"\0") + mark + b"\0" if mark else user_data
+        return Participant(number, reach=reach, user_data=told, **options)  # type: ignore[arg-type]
 
     return DdsTransport(join, domain, enclave or "/")
 

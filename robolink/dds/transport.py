@@ -190,6 +190,10 @@ class DdsTransport(Transport):
         known = {each.guid for each in participant.endpoints()}
         return known == {*others.endpoints} and {each.prefix for each in participant.peers()} == {*others.peers}
 
+    def peers(self) -> list[Peer]:
+        """Return the other participants of the domain."""
+        return self._participant.peers()
+
     # What the participant tells, on its thread
 
     def _on_peer(self, peer: Peer, came: bool) -> None:

@@ -62,7 +62,7 @@ _MARK = re.compile(rb"robolink_bridge=([0-9a-f]{1,32}),([A-Za-z0-9_.-]{1,253});"
 
 
 class Mark(NamedTuple):
-    """What a bridge adds to the user data of its participant on DDS, where there are no tokens."""
+    """Mark of a bridge in its participant's user data on DDS, where there are no tokens."""
 
     mark: str
     """Id of the bridge: its session on the other network."""

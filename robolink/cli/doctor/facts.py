@@ -105,7 +105,7 @@ class Facts(NamedTuple):
     """Number of nodes on each other domain in use; None if they could not be counted."""
     seen: Seen = Seen()
     dds: Dds = Dds()
-    """Who speaks DDS on this machine."""
+    """Processes that speak DDS on this machine."""
     by_multicast: frozenset[str] = frozenset()
     """Ids of the sessions that answer a multicast, as far as that is used."""
     machine: shared_memory.Machine = shared_memory.Machine()

@@ -62,6 +62,7 @@ NOUNS = {
     "multicast": Entry("robolink.cli.multicast", "Send or receive a multicast packet, to test the network."),
     "network": Entry("robolink.cli.doctor.network", "Show the network settings and the discovered sessions."),
     "router": Entry("robolink.cli.router", "Run a Zenoh router between machines."),
+    "bridge": Entry("robolink.cli.bridge", "Join nodes of ROS 2 over DDS to this network."),
     "doctor": Entry("robolink.cli.doctor", "Check settings, network and running nodes for problems."),
     "shim": Entry("robolink.cli.shim", "Install a ros2 or colcon command that runs robolink."),
     "daemon": Entry("robolink.cli.daemon", ""),

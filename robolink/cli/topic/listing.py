@@ -163,7 +163,7 @@ def _losses(context: Context) -> dict[bytes, Losses]:
 
 
 class _More(NamedTuple):
-    """What robolink tells of endpoints in addition to ros2."""
+    """Facts about endpoints that robolink shows in addition to ros2's."""
 
     lost: Mapping[bytes, Losses] = {}
     """Losses of subscriptions, by their gids."""

@@ -40,7 +40,7 @@ _GIVING = (EndpointKind.PUBLISHER, EndpointKind.SERVICE)
 Token = NodeToken | EndpointToken
 Flow = TopicFlow | ServiceFlow
 Place = tuple[bool, str, str]
-"""Whether it is a topic, its name, and its type."""
+"""Key of a topic (True) or service (False): with its name, and its type."""
 
 
 class Count(NamedTuple):

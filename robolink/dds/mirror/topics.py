@@ -43,7 +43,7 @@ class _Inlet(NamedTuple):
 
 
 class _Flowing(NamedTuple):
-    """What a publisher has while its samples flow."""
+    """Outlet of a publisher whose samples flow, and the way to it."""
 
     outlet: Outlet
     forward: Forward
