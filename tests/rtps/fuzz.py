@@ -10,6 +10,7 @@ more time than one of its size may.
 from __future__ import annotations
 
 import argparse
+import gc
 import itertools
 import random
 import struct
@@ -318,6 +319,8 @@ def run(count: int, seed: int = 1, life: int = LIFE) -> Outcome:
         answered += victim.answered
         longest, most_answered = max(longest, victim.longest), max(most_answered, victim.most_answered)
         all_well = all_well and victim.is_well()
+        del victim
+        gc.collect()
     return Outcome(
         count, time.perf_counter() - begun, nonsense, size, answered, most_answered, longest, memory, all_well
     )

@@ -147,6 +147,19 @@ def test_multicast_reaches_all_of_the_domain(pair: tuple[Sockets, Sockets], doma
         assert receive(each, 1) == [(b"I am here", one.metatraffic)]
 
 
+def test_without_multicast_those_that_are_searched_are_met(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on macOS, where the loopback interface has no route for it."""
+    monkeypatch.setattr("robolink.rtps.sockets._joins", lambda group, address: False)
+    monkeypatch.setattr("robolink.rtps.sockets._can_multicast", lambda pair: False)
+    with contextlib.closing(Sockets(domain)) as one, contextlib.closing(Sockets(domain)) as other:
+        assert not one.hears_multicast
+        assert other.metatraffic in one.search
+        assert {address for address, _ in one.search} == {LOOPBACK}
+        one.send((GROUP, multicast_port(domain)), [b"nobody hears it"])
+        one.send(other.metatraffic, [b"hello"])
+        assert receive(other, 1) == [(b"hello", one.metatraffic)]
+
+
 def test_nothing_is_sent_beyond_loopback(pair: tuple[Sockets, Sockets]) -> None:
     one, _ = pair
     for address in ("192.0.2.77", "8.8.8.8", "255.255.255.255", "224.0.0.1"):

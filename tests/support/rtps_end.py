@@ -42,7 +42,9 @@ class End:
     def report(self) -> str:
         """Return whom we know and have heard."""
         peers = sorted(peer.name for peer in self.participant.peers())
-        return json.dumps({"peers": peers, "heard": self.heard, "endpoints": len(self.participant.endpoints())})
+        endpoints = self.participant.endpoints()
+        topics = sorted({endpoint.topic for endpoint in endpoints})
+        return json.dumps({"peers": peers, "heard": self.heard, "endpoints": len(endpoints), "topics": topics})
 
 
 def main() -> None:

@@ -2,9 +2,9 @@
 
     python -m tests.support.rtps_hosts [--seconds 60]
 
-Two participants on loopback talk; a third one on the other machine announces itself to the cable's multicast, which
-another program here has joined; what is requested: nothing but the kernel's own frames leaves, and the two do not know
-the third. It ends with 1 otherwise. Needs root.
+On the first one two participants talk, and a node with `--network dds`, and a bridge with a node behind it; one on the
+other machine announces itself to the cable's multicast, which another program here has joined. What is requested:
+nothing but the kernel's own frames leaves, and nobody knows the other machine's. It ends with 1 otherwise. Needs root.
 """
 
 from __future__ import annotations
@@ -55,10 +55,22 @@ class Hosts:
 
     def program(self, host: str, *words: str) -> subprocess.Popen[str]:
         """Start a program of Python that prints `ready`."""
-        clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK"))}
-        process = start(self._stack, ["ip", "netns", "exec", host, sys.executable, *words], clean)
+        process = self._start(host, *words)
         assert line(process) == "ready"
         return process
+
+    def nodes_and_bridge(self, host: str) -> None:
+        """Start a node that publishes with `--network dds`, and one on Zenoh beside `robolink bridge dds`."""
+        domain = {"ROS_DOMAIN_ID": str(DOMAIN)}
+        bridge = self._start(host, "-m", "robolink", "bridge", "dds", **domain)
+        assert line(bridge).startswith("robolink bridge: DDS on this machine and Zenoh (localhost)")
+        for name, environ in (("direct", {"ROBOLINK_NETWORK": "dds"}), ("bridged", {})):
+            node = self._start(host, "-m", "tests.support.swarm", name, "--talk", "20", **domain, **environ)
+            assert json.loads(line(node))["made"]
+
+    def _start(self, host: str, *words: str, **environ: str) -> subprocess.Popen[str]:
+        clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK"))}
+        return start(self._stack, ["ip", "netns", "exec", host, sys.executable, *words], clean | environ)
 
     def end(self, host: str, name: str, *options: str) -> subprocess.Popen[str]:
         """Start a participant."""
@@ -100,7 +112,7 @@ def knows(process: subprocess.Popen[str], *names: str) -> bool:
     return bool(report(process)["peers"] == sorted(names))
 
 
-def watch(seconds: float) -> tuple[Counter[str], list[dict[str, Any]]]:
+def watch(seconds: float, *, nodes: bool = False) -> tuple[Counter[str], list[dict[str, Any]]]:
     """Play the scene for so long; return the frames that left, and what the two know and heard."""
     with ExitStack() as stack:
         hosts = Hosts(stack)
@@ -108,6 +120,9 @@ def watch(seconds: float) -> tuple[Counter[str], list[dict[str, Any]]]:
         capture = hosts.capture(hosts.here)
         two = [hosts.end(hosts.here, name) for name in ("one", "two")]
         wait_until(lambda: knows(two[0], "two") and knows(two[1], "one"), 10.0)
+        if nodes:
+            hosts.nodes_and_bridge(hosts.here)
+            wait_until(lambda: knows(two[0], "two", "/", "/") and {*_STATES} <= {*report(two[0])["topics"]}, 20.0)
         hosts.end(hosts.there, "stranger", "--interface", "cable")
         assert line(joined) == "heard"  # so the stranger's announcements come to this machine, and into the group
         end = time.monotonic() + seconds
@@ -123,6 +138,7 @@ def watch(seconds: float) -> tuple[Counter[str], list[dict[str, Any]]]:
         ]
 
 
+_STATES = ("rt/direct/state", "rt/bridged/state")
 _SPEAK = f"import socket; s = socket.socket(type=socket.SOCK_DGRAM); s.sendto(b'x', ('{THERE}', 9))"
 
 
@@ -133,9 +149,9 @@ def main() -> None:
     requested = parser.parse_args()
     if reason := stalls.no_hosts():
         sys.exit(reason)
-    frames, known = watch(requested.seconds)
+    frames, known = watch(requested.seconds, nodes=True)
     print(f"in {requested.seconds:g} s left by the cable: {dict(frames)}; they know and heard: {known}")  # noqa: T201
-    sys.exit(set(frames) > {KERNEL} or [each["peers"] for each in known] != [["two"], ["one"]])
+    sys.exit(set(frames) > {KERNEL} or [each["peers"] for each in known] != [["/", "/", "two"], ["/", "/", "one"]])
 
 
 if __name__ == "__main__":
