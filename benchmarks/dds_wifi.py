@@ -7,10 +7,11 @@ REAL is a Python with rclpy and Fast DDS, as in benchmarks/beside_rclpy.py, also
 The network is tests/support/wireless.py: two network namespaces, 3 ms +- 2 ms, 30 Mbit/s each way, frames lost
 evenly. Only inside of them do real nodes have their default range, SUBNET. Linux, root.
 
-Contenders: `real` is DDS from end to end. `zenoh` is robolink at both ends (`--network lan`). In `bridge` the robot has
-real nodes on loopback and `robolink bridge dds --network lan`, the laptop robolink. In `direct` the robot has real
-nodes as they are, the laptop robolink with `--network dds` on the wireless interface; in `far-bridge` the laptop has
-the bridge, which speaks DDS across the air, and robolink on `localhost`.
+Contenders: `real` is DDS from end to end, `tuned` the same with what ROS 2's documentation says of lossy links (the
+kernel's ipfrag_time and ipfrag_high_thresh), `ours` robolink with `--network dds` at both ends, `zenoh` robolink with
+`--network lan`. In `bridge` the robot has real nodes on loopback and `robolink bridge dds --network lan`, the laptop
+robolink. In `direct` the robot has real nodes as they are, the laptop robolink with `--network dds`; in `far-bridge`
+the laptop has the bridge, which speaks DDS across the air, and robolink on `localhost`.
 
 Rows: `twist` goes to the robot at 20 Hz, `scan` (8.7 kB) and `image` (300 kB, so 24 Mbit/s) come at 10 Hz, each
 BEST_EFFORT and RELIABLE; `jpeg` is 40 kB; `both` is `twist` beside a RELIABLE `image`; `call` is a service of the
@@ -89,17 +90,23 @@ class Contender(NamedTuple):
     """The machine that has one: 'robot' or 'laptop'."""
     bridge_words: tuple[str, ...] = ()
     bridge_environ: Mapping[str, str] = MappingProxyType({})
+    is_tuned: bool = False
+    """Both kernels have room for parts of datagrams, and forget them soon."""
 
 
 LAN = {"ROBOLINK_NETWORK": "lan", "ROBOLINK_SHARED_MEMORY": "off"}
 """Without shared memory, which two namespaces of one machine have and two machines do not."""
 SUBNET = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+DDS = {"ROBOLINK_NETWORK": "dds", **SUBNET}
+TUNED = "echo 3 >/proc/sys/net/ipv4/ipfrag_time; echo 134217728 >/proc/sys/net/ipv4/ipfrag_high_thresh"
 LOOPBACK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 CONTENDERS = (
     Contender("real", SUBNET, SUBNET, laptop_is_real=True),
+    Contender("tuned", SUBNET, SUBNET, laptop_is_real=True, is_tuned=True),
+    Contender("ours", DDS, DDS, robot_is_real=False),
     Contender("zenoh", LAN, LAN, robot_is_real=False),
     Contender("bridge", LOOPBACK, LAN, bridge="robot", bridge_environ=LAN),
-    Contender("direct", SUBNET, {"ROBOLINK_NETWORK": "dds", "ROBOLINK_DDS_INTERFACE": INTERFACE}),
+    Contender("direct", SUBNET, DDS),
     Contender("far-bridge", SUBNET, {}, bridge="laptop", bridge_words=("--interface", INTERFACE)),
 )
 
@@ -133,6 +140,8 @@ class Game:
 
     def __init__(self, stack: ExitStack, each: Contender, link: Link, real: str, program: str) -> None:
         self._stack, self._each, self._link, self._real, self._program = stack, each, link, real, program
+        for machine in ("robot", "laptop") if each.is_tuned else ():
+            subprocess.run([*self._on(machine), "sh", "-c", TUNED], check=True)
         if each.bridge:
             self._start_bridge()
         self.robot = self._start("robot")

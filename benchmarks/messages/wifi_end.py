@@ -53,11 +53,17 @@ def advertise(order):
 
 
 def publish(order):
+    refused = []
     publisher, message, begun = publishers[order["topic"]], messages[order["topic"]], time.monotonic()
     for number in range(order["count"]):
         time.sleep(max(0.0, begun + number / order["rate"] - time.monotonic()))
         stamp(message, number)
-        publisher.publish(message)
+        try:
+            publisher.publish(message)
+        except Exception as error:  # Fast DDS: "cannot publish data", where the link cannot take what is sent again
+            refused.append(str(error))
+    if refused:
+        print(f"{role}: {len(refused)} of {order['count']} publish() raised: {refused[0]}", file=sys.stderr)
     return True
 
 

@@ -1,7 +1,8 @@
 """The network `dds`: a session on DDS as the environment requests it, by ROS 2's own variables.
 
 Nothing leaves the machine by default. Where ROS_AUTOMATIC_DISCOVERY_RANGE says SUBNET, or ROS_STATIC_PEERS names
-machines, one interface beside loopback is used: that of ROBOLINK_DDS_INTERFACE, else the one that leads there.
+machines, one interface beside loopback is used: that of ROBOLINK_DDS_INTERFACE, else the one that leads there. An
+interface alone means SUBNET.
 """
 
 from __future__ import annotations
@@ -73,7 +74,8 @@ def reach_of(environ: Mapping[str, str]) -> Reach:
     if text == "OFF":
         return Reach(range=Range.OFF)
     peers = tuple(filter(None, (each.strip() for each in environ.get(STATIC_PEERS, "").split(";"))))
-    wide, interface = text == "SUBNET", environ.get(INTERFACE, "").strip()
+    interface = environ.get(INTERFACE, "").strip()
+    wide = text == "SUBNET" or bool(interface and text != "LOCALHOST")  # who names one wants to be met there
     if not (wide or peers):
         return Reach(interface, range=Range.LOCALHOST)
     return Reach(interface or _way_to(_GROUP if wide else peers[0]), peers, Range.SUBNET if wide else Range.LOCALHOST)
