@@ -282,7 +282,9 @@ class _Place:
         self._sides = sides
         a, b = sides
         self.flows: tuple[Flow, Flow] = (
-            (TopicFlow(a, b, later), TopicFlow(b, a, later)) if is_topic else (ServiceFlow(a, b), ServiceFlow(b, a))
+            (TopicFlow(a, b, later), TopicFlow(b, a, later))
+            if is_topic
+            else (ServiceFlow(a, b, later), ServiceFlow(b, a, later))
         )
         """From the first side to the second, and back."""
         self._hashes = ["", ""]
@@ -299,8 +301,7 @@ class _Place:
         self._hashes[number] = type_hash
         for flow in self.flows:
             for gid, token in flow.hashless(self._sides[number]):
-                self.remove(1 - number, gid, token)
-                self.add(1 - number, gid, token)
+                flow.rehash(gid, token, type_hash)
 
     def add(self, number: int, gid: bytes, token: EndpointToken) -> None:
         """Mirror an endpoint of a side."""

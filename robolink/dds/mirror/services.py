@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
-from robolink.dds.mirror.sides import Announced, Side
+from robolink.dds.mirror.sides import Announced, Later, Side
 from robolink.exceptions import TransportError
 from robolink.transport.base import Handle, Query
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, answer_to, gid_in, is_attachment, numbers_in
+
+REHASHED_FOR = 2.0
+"""Time in seconds for which a service is still served without the hash of its type, once that is known."""
 
 MOST_CALLS = 1000
 """Most calls of one service that are under way; beyond it the oldest ends unanswered."""
@@ -49,9 +53,10 @@ class _Serving:
 
     droppable = False
 
-    def __init__(self, flow: ServiceFlow, key: str, source_key: str) -> None:
-        self._flow, self._source_key = flow, source_key
-        self.users = 0
+    def __init__(self, flow: ServiceFlow, key: str) -> None:
+        self._flow = flow
+        self.sources: Counter[str] = Counter()
+        """Number of servers on the source side by their key there; it has been empty since the last of them went."""
         side = flow.target
         self.handle = side.transport.serve(key, side.lane.sink(self))
 
@@ -64,13 +69,17 @@ class _Serving:
         if caller in flow.target.own or not is_attachment(asked):
             query.close()
             return
+        key = next(iter(self.sources), "")
+        if not key:
+            query.close()
+            return
         flow.make_room()
-        call = PassedCall(flow, query, caller, self._source_key)
+        call = PassedCall(flow, query, caller, key)
         flow.calls[call] = None
         attachment = numbers_in(asked) + flow.sender_of(caller)
         sink = flow.source.lane.sink(call)
         try:
-            call.handle = flow.source.transport.call(self._source_key, query.payload, attachment, sink)
+            call.handle = flow.source.transport.call(key, query.payload, attachment, sink)
         except BaseException:
             call.end()
             raise
@@ -84,10 +93,11 @@ class ServiceFlow:
     Args:
         source: Side of the servers.
         target: Side of the clients.
+        later: Ways to do something later.
     """
 
-    def __init__(self, source: Side, target: Side) -> None:
-        self.source, self.target = source, target
+    def __init__(self, source: Side, target: Side, later: Later) -> None:
+        self.source, self.target, self._later = source, target, later
         self.calls: dict[PassedCall, None] = {}
         """Calls under way, the oldest first."""
         self._servers: dict[bytes, tuple[EndpointToken, Announced]] = {}
@@ -116,32 +126,56 @@ class ServiceFlow:
 
     def flows(self) -> bool:
         """True if the target side can call a server of the source side."""
-        return bool(self._serving)
+        return bool(self._servers)
 
     def _add_server(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:
         """Serve it on the target side, and announce it there."""
         key = self.target.key(token._replace(type_hash=type_hash))
-        serving = self._serving.get(key)
-        if serving is None:
+        if key not in self._serving:
             # One for all servers of the name: a call reaches each of them once, as it does on their own side.
-            serving = self._serving[key] = _Serving(self, key, self.source.key(token))
-        serving.users += 1
+            self._serving[key] = _Serving(self, key)
+        self._serving[key].sources[self.source.key(token)] += 1
         self._servers[gid] = token, self.target.announce(token, type_hash)
 
     def _remove_server(self, gid: bytes) -> None:
         """End its announcement; with the last one end the calls that wait for an answer, too."""
+        source_key = self.source.key(self._servers[gid][0])
+        self._close_if_unused(self._withdraw(gid))
+        if source_key not in {self.source.key(token) for token, _ in self._servers.values()}:
+            self._end_calls(lambda call: call.key == source_key)
+
+    def rehash(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:
+        """Announce something again with the hash that has become known; see `add`."""
+        if token.kind is not EndpointKind.SERVICE:
+            self.remove(gid, token)
+            self.add(gid, token, type_hash)
+            return
+        key = self._withdraw(gid)
+        serving = self._serving[key]
+        self._add_server(gid, token, type_hash)
+        # Whose client has made the hash known, has seen the server without it, and may be calling that just now.
+        serving.sources[self.source.key(token)] += 1
+
+        def end() -> None:
+            serving.sources -= Counter([self.source.key(token)])
+            if self._serving.get(key) is serving:
+                self._close_if_unused(key)
+
+        self._later.call_after(REHASHED_FOR, end)
+
+    def _withdraw(self, gid: bytes) -> str:
+        """End the announcement of a server; return the key of its service on the target side."""
         token, announced = self._servers.pop(gid)
         self.target.withdraw(announced, token)
         mirrored = announced.token
         assert isinstance(mirrored, EndpointToken)
         key = self.target.key(mirrored)
-        serving = self._serving[key]
-        serving.users -= 1
-        if not serving.users:
-            del self._serving[key]
-            serving.handle.close()
-            source_key = self.source.key(token)
-            self._end_calls(lambda call: call.key == source_key)
+        self._serving[key].sources -= Counter([self.source.key(token)])
+        return key
+
+    def _close_if_unused(self, key: str) -> None:
+        if not self._serving[key].sources:
+            self._serving.pop(key).handle.close()
 
     def _remove_client(self, gid: bytes) -> None:
         """End its announcement, and its calls."""
@@ -181,5 +215,7 @@ class ServiceFlow:
         self._end_calls(lambda call: True)
         for gid in list(self._servers):
             self._remove_server(gid)
+        for key in list(self._serving):
+            self._serving.pop(key).handle.close()
         for gid in list(self._clients):
             self._remove_client(gid)

@@ -103,6 +103,11 @@ class TopicFlow:
         else:
             self._remove_subscription(gid)
 
+    def rehash(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:
+        """Announce something again with the hash that has become known; see `add`."""
+        self.remove(gid, token)
+        self.add(gid, token, type_hash)
+
     # Publishers
 
     def _add_publisher(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:

@@ -9,6 +9,7 @@ import pytest
 from robolink import Node
 from robolink.action import ActionClient, ActionServer, CancelResponse
 from robolink.dds.mirror.mirror import LINGER
+from robolink.dds.mirror.services import REHASHED_FOR
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.message import type_hash
@@ -16,7 +17,10 @@ from robolink.parameter import Parameter
 from robolink.parameter_client import AsyncParameterClient
 from robolink.serialization import deserialize_message, serialize_message
 from robolink.wire import (
+    NO_HASH,
+    DataKey,
     EndpointKind,
+    format_key,
     format_token,
     gid_of,
     graph_pattern,
@@ -234,3 +238,33 @@ def _count_up(goal: Any) -> Any:
         goal.publish_feedback(feedback)
     goal.succeed()
     return Fibonacci.Result(sequence=feedback.sequence)
+
+
+def test_a_call_that_was_made_before_the_hash_was_known_is_answered(joined: Mirrored) -> None:
+    """The client sees a server without a hash, calls that at once, and its own token makes the hash known."""
+    server = joined.a.session()
+    token = raw_tokens(server.session_id, NO_HASH)[0]._replace(
+        kind=EndpointKind.SERVICE, name="/add", type_name="example_interfaces/srv/AddTwoInts"
+    )
+    seen: list[Any] = []
+    server.serve(format_key(DataKey(0, token.name, token.type_name, NO_HASH)), seen.append)
+    announced = server.announce(format_token(token))
+    joined.run(0.1)
+    client = joined.b.node("asker").create_client(AddTwoInts, "add")
+    assert client.service_is_ready()
+    calls: list[Any] = [client.try_call_async(AddTwoInts.Request(a=1, b=2))]
+    joined.run(REHASHED_FOR / 2)
+    calls.append(client.try_call_async(AddTwoInts.Request(a=1, b=2)))
+    joined.run(REHASHED_FOR + 0.2)
+    assert len(seen) == 2
+    for arrived in seen:
+        query = server.accept(arrived)
+        query.reply(bytes(serialize_message(AddTwoInts.Response(sum=3))), query.attachment)
+        query.close()
+    joined.until(lambda: all(each.done() for each in calls))
+    assert [each.result().sum for each in calls] == [3, 3]
+    calls.append(client.try_call_async(AddTwoInts.Request()))
+    joined.run(0.1)
+    announced.close()
+    joined.until(calls[-1].done, 1.0)
+    assert calls[-1].exception() is not None
