@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from robolink.dds.topics import Topics
     from robolink.rtps import Reader
 
+_AS_REQUESTED, _RELIABLY, _AS_IT_COMES, _NOT_AT_ALL = "as requested", "reliably", "as it comes", "not at all"
+"""Ways by which a writer is read."""
+
 _MOST_HELD = 100
 """Most writers whose samples are held for a sink that is still to come."""
 
@@ -42,15 +45,36 @@ class Reading:
         self._lock = fork_lock()
         self._requested, self._depth = announced(qos), latched_depth(qos)
         self._held: dict[bytes, Latch[tuple[bytes, bytes]]] = {}
-        self._lenient: dict[bool, Reader] = {}
-        """Readers of the writers that offer less, by whether these are reliable."""
-        self._reader = self._make(self._requested, self._has_hash)
+        self._lenient: dict[str, Reader] = {}
+        """Readers of the writers that offer less, by the way in which they are read."""
+        self._sources: dict[bytes, str] = {}
+        """Way by which each writer is read, by its GUID, as far as it has sent anything."""
+        self._reader = self._make(self._requested, _AS_REQUESTED)
 
-    def _make(self, qos: Qos, accepts: Callable[[Endpoint], bool]) -> Reader:
-        stream = self.stream
-        return self._topics.participant.reader(
-            stream.topic, stream.dds_type, qos, self._on_sample, user_data=stream.user_data, accepts=accepts
-        )
+    def _make(self, qos: Qos, way: str) -> Reader:
+        stream, sources = self.stream, self._sources
+
+        def sink(payload: bytes, info: Info) -> None:
+            # Each reader is matched with all writers that fit it, and acknowledges what comes: a RELIABLE writer that
+            # keeps all would wait for one that does not. So it is here that a writer is read once.
+            source = sources.get(info.writer) or self._find_source(info.writer)
+            if source is way:
+                self._on_sample(payload, info)
+
+        return self._topics.participant.reader(stream.topic, stream.dds_type, qos, sink, user_data=stream.user_data)
+
+    def _find_source(self, guid: bytes) -> str:
+        writer = self._topics.writer_at(self.stream.place, guid)
+        found = self._sources[guid] = _AS_REQUESTED if writer is None else self._way(writer)
+        return found
+
+    def _way(self, writer: Endpoint) -> str:
+        """Return the way by which a writer is read: as requested, by a lenient reader of its reliability, or not."""
+        if not self._has_hash(writer):
+            return _NOT_AT_ALL
+        if not shortcomings(self._requested, writer.qos):
+            return _AS_REQUESTED
+        return _RELIABLY if writer.qos.reliable else _AS_IT_COMES
 
     def _has_hash(self, writer: Endpoint) -> bool:
         """Return whether a writer has the type of this hash; one that does not tell it is taken at its word."""
@@ -73,21 +97,20 @@ class Reading:
 
     def meet(self, writer: Endpoint) -> None:
         """Read a writer that offers less than is requested by a reader of its own; for others there is one."""
-        lacking = shortcomings(self._requested, writer.qos)
-        is_reliable = writer.qos.reliable
-        if not lacking or is_reliable in self._lenient or not self._has_hash(writer):
+        way = self._way(writer)
+        if way in (_AS_REQUESTED, _NOT_AT_ALL) or way in self._lenient:
             return
-
-        def accepts(other: Endpoint) -> bool:
-            is_meant = other.qos.reliable == is_reliable and self._has_hash(other)
-            return is_meant and bool(shortcomings(self._requested, other.qos))
-
-        self._lenient[is_reliable] = self._make(Qos(reliable=is_reliable, depth=self._requested.depth), accepts)
+        self._lenient[way] = self._make(Qos(reliable=writer.qos.reliable, depth=self._requested.depth), way)
         self.on_guids()
+        lacking = shortcomings(self._requested, writer.qos)
         get_logger("robolink.dds").warning(
             f"{self.stream.name}: a publisher offers less {' and '.join(lacking)} than a subscription here requests:"
             " it is heard in robolink, but a subscription of ROS 2 would get nothing from it over DDS"
         )
+
+    def forget(self, writer: bytes) -> None:
+        """Forget a writer that has gone."""
+        self._sources.pop(writer, None)
 
     # What comes
 
@@ -126,7 +149,7 @@ class Reading:
         self._gate = None
         before = self._readers
         self._lenient = {}
-        self._reader = self._make(self._requested, self._has_hash)
+        self._reader = self._make(self._requested, _AS_REQUESTED)
         for reader in before:
             reader.close()
         for writer in self._topics.writers_at(self.stream.place):

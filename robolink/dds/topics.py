@@ -65,6 +65,10 @@ class Topics:
         self._outlets: dict[DdsOutlet, None] = {}
         self._subscriptions: dict[DdsSubscription, None] = {}
 
+    def writer_at(self, place: Place, guid: bytes) -> Endpoint | None:
+        """Return the writer of this GUID."""
+        return self.writers.get(place, {}).get(guid)
+
     # Declarations
 
     def advertise(self, key: str, qos: QoSProfile) -> DdsOutlet:
@@ -160,6 +164,8 @@ class Topics:
                     reading.meet(endpoint)
             elif place in table:
                 table[place].pop(endpoint.guid, None)
+                for reading in self.readings.get(place, ()):
+                    reading.forget(endpoint.guid)
                 if not table[place]:
                     del table[place]
 

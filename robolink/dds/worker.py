@@ -20,11 +20,11 @@ class Worker:
     """Queue of work, done by one thread."""
 
     def __init__(self) -> None:
-        self._todo: queue.SimpleQueue[Work | None] = queue.SimpleQueue()
+        self._todo: queue.SimpleQueue[Work | threading.Event | None] = queue.SimpleQueue()
         self._idle: dict[Work, None] = {}
         self._idle_until = 0.0
         self.latest = clocks.monotonic()
-        """Time at which the last work was done, by `clocks.monotonic`."""
+        """Time of the last news, by `clocks.monotonic`: when work was last done."""
         threading.Thread(target=self._run, name="robolink dds", daemon=True).start()
 
     def post(self, work: Work) -> None:
@@ -38,7 +38,7 @@ class Worker:
     def catch_up(self, seconds: float) -> bool:
         """Wait until all is done that was posted before, for so many seconds at most; return whether it is."""
         done = threading.Event()
-        self.post(done.set)
+        self._todo.put(done)
         return waits.wait(done, seconds)
 
     def close(self) -> None:
@@ -59,8 +59,11 @@ class Worker:
                 continue
             if work is None:
                 return
-            self._do(work)
-            self.latest = clocks.monotonic()
+            if isinstance(work, threading.Event):
+                work.set()
+            else:
+                self._do(work)
+                self.latest = clocks.monotonic()
 
     def _patience(self) -> float:
         return min(QUIET, self._idle_until - clocks.monotonic())

@@ -108,7 +108,8 @@ class FakeParticipant:
                 self._learn(endpoint)
 
     def _learn(self, endpoint: Endpoint) -> None:
-        if endpoint.guid in self.known or not self.is_open:
+        owner = self.network.participants.get(endpoint.guid[:12])
+        if endpoint.guid in self.known or not self.is_open or owner is None or endpoint.guid not in owner.mine:
             return
         self.known[endpoint.guid] = endpoint
         self.on_endpoint(endpoint, True)
