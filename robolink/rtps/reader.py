@@ -114,6 +114,7 @@ class WriterProxy:
         "acked_at",
         "address",
         "asked",
+        "asked_at",
         "base",
         "bytes",
         "delay",
@@ -147,8 +148,8 @@ class WriterProxy:
         self.serial = 0
         self.acked, self.acked_at = 0, -math.inf
         """Before which number all was acknowledged, and when."""
-        self.asked = 0
-        """The highest number that was requested."""
+        self.asked, self.asked_at = 0, -math.inf
+        """The highest number that was requested, and when."""
         self.delay = _GREET_AFTER
         self.due = math.inf
 
@@ -410,8 +411,10 @@ class StatefulReader:
             again: also what was requested before.
         """
         missing = self._missing(proxy)
-        if missing and (again or missing[-1] > proxy.asked or now >= proxy.due):
-            proxy.asked = missing[-1]
+        # Whoever expects an answer is there, and has nothing under way that was requested long ago.
+        again = again or now >= proxy.due or (answer and now >= proxy.asked_at + _ASK_AFTER)
+        if missing and (again or missing[-1] > proxy.asked):
+            proxy.asked, proxy.asked_at = missing[-1], now
             self._acknack(proxy, proxy.next, missing, final=False)
             self._wake(proxy, now + proxy.delay)
             proxy.delay = min(2 * proxy.delay, _ASK_SLOWEST)

@@ -38,8 +38,12 @@ them get a GAP. So a reader that stands still costs no more than this, and `put`
 
 _HEARTBEAT_AFTER, _HEARTBEAT_SLOWEST = 0.05, 1.0
 """Seconds until a reader that has not acknowledged is reminded; twice as long each time, up to the second."""
+_BEAT_EVERY, _BEAT_LATE = 0.008, 0.02
+"""Seconds between heartbeats that go with samples, and until one is sent for a sample that left without. Fast DDS
+answers 5 ms after a heartbeat, and begins to wait anew with each: with one for each of 1,000 samples a second it would
+acknowledge nothing, nor request what it lost, before there is a pause."""
 _REMIND_SAMPLES, _REMIND_BYTES = 32, 256 << 10
-"""What may be under way before the heartbeat that goes with each sample requests an acknowledgement."""
+"""What may be under way before a heartbeat that goes with a sample requests an acknowledgement."""
 _REPAIR_BYTES = 8 << 20
 """What one ACKNACK gets at most; the heartbeat behind it makes the reader request the rest."""
 _REPAIR_PAUSE, _REPAIR_RATE = 0.01, 100e6
@@ -137,6 +141,8 @@ class StatefulWriter:
         self._delay = _HEARTBEAT_AFTER
         self._under_way = self._bytes_under_way = 0
         """Since the last heartbeat that requested an acknowledgement."""
+        self._beaten_at = -math.inf
+        """When the last heartbeat was sent."""
         self._routes: dict[tuple[Locator, bytes], _Route] = {}
         """By address and participant."""
 
@@ -224,12 +230,15 @@ class StatefulWriter:
             self._passing += not kept
             self._trim()
         if self._routes:
-            final = not self._reminds(change)
+            self._under_way += 1
+            self._bytes_under_way += change.size
+            beats = now >= self._beaten_at + _BEAT_EVERY
+            final = not beats or not self._reminds()
             for route in self._routes.values():
-                beats = self._route_beats(route, final=final) if route.reliable else b""
-                self._send_change(route.address, route.head, route.entity, change, beats)
+                beat = self._route_beats(now, route, final=final) if beats and route.reliable else b""
+                self._send_change(route.address, route.head, route.entity, change, beat)
             if reliable:
-                self._expect(now)
+                self._expect(now, _HEARTBEAT_AFTER if beats else _BEAT_LATE)
         return number
 
     def discard(self, number: int) -> None:
@@ -251,14 +260,12 @@ class StatefulWriter:
             self._drop(next(iter(self._history)))
             self.lost += 1
 
-    def _reminds(self, change: Change) -> bool:
+    def _reminds(self) -> bool:
         """Return whether the heartbeat that goes with a sample requests an acknowledgement.
 
         Most do not: a reader that lacks something says so anyway, and at 1,000 samples a second an answer to each would
         cost both ends more than the samples do.
         """
-        self._under_way += 1
-        self._bytes_under_way += change.size
         if self._under_way < _REMIND_SAMPLES and self._bytes_under_way < _REMIND_BYTES:
             return False
         self._under_way = self._bytes_under_way = 0
@@ -297,8 +304,9 @@ class StatefulWriter:
             entity, self.entity, max(self.first, first), self.last, self._serial & 0x7FFFFFFF, final=final
         )
 
-    def _route_beats(self, route: _Route, *, final: bool) -> bytes:
+    def _route_beats(self, now: float, route: _Route, *, final: bool) -> bytes:
         """Return the heartbeats for the readers behind an address: one, unless they may have different samples."""
+        self._beaten_at = now
         if len(route.reliable) == 1:
             return self._beat(route.reliable[0].guid[12:], route.first, final=final)
         if self.first >= route.first:
@@ -308,11 +316,15 @@ class StatefulWriter:
     def _heartbeat(self, proxy: ReaderProxy, *, final: bool = False) -> None:
         self._send(proxy.address, [proxy.head, self._beat(proxy.guid[12:], proxy.first, final=final)], False)
 
-    def _expect(self, now: float) -> None:
+    def _expect(self, now: float, after: float = _HEARTBEAT_AFTER) -> None:
         """See to it that readers that do not acknowledge are reminded."""
-        if self.due == math.inf and self._behind():
+        if not self._behind():
+            return
+        if self.due == math.inf:
             self._delay = _HEARTBEAT_AFTER
-            self.due = now + self._delay
+            self.due = now + after
+        elif after < _HEARTBEAT_AFTER:
+            self.due = min(self.due, now + after)
 
     def _behind(self) -> bool:
         return any(proxy.acked <= self.last for route in self._routes.values() for proxy in route.reliable)
@@ -321,10 +333,13 @@ class StatefulWriter:
         """Remind readers that have not acknowledged everything. With none, nothing is sent: an idle writer is quiet."""
         if now < self.due:
             return
+        if now < self._beaten_at + _BEAT_LATE:  # samples come in a row, and heartbeats with them
+            self.due = self._beaten_at + _BEAT_LATE
+            return
         self.due = math.inf
         for route in self._routes.values():
             if any(proxy.acked <= self.last for proxy in route.reliable):
-                self._send(route.address, [route.head, self._route_beats(route, final=False)], False)
+                self._send(route.address, [route.head, self._route_beats(now, route, final=False)], False)
                 self._delay = min(2 * self._delay, _HEARTBEAT_SLOWEST)
                 self.due = now + self._delay
 
@@ -340,9 +355,9 @@ class StatefulWriter:
         if proxy is None or not proxy.reliable or serial == proxy.serial:
             return
         proxy.serial = serial
+        self._delay = _HEARTBEAT_AFTER  # it is there: what it lacks now was lost, or never left
         if proxy.acked < base <= self.last + 1:
             proxy.acked = base
-            self._delay = _HEARTBEAT_AFTER
             proxy.repaired = {number: until for number, until in proxy.repaired.items() if number >= base}
             self._forget_acknowledged()
         wanted = [number for number in missing if 0 < number <= self.last]
@@ -363,6 +378,7 @@ class StatefulWriter:
         if change is None or number < proxy.first:
             self._tell_gone(proxy, [number])
         elif missing and self._may_repair(now, proxy, len(missing) * fragment_of(proxy.address)):
+            self._beaten_at = now
             beat = self._beat(guid[12:], proxy.first, final=False)
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
         self._expect(now)
@@ -414,6 +430,7 @@ class StatefulWriter:
             bundle += (stamp, data)
             size += len(stamp) + len(data)
         if proxy.reliable and changes:
+            self._beaten_at = now
             bundle.append(self._beat(entity, proxy.first, final=False))
         self._flush(proxy, bundle)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 
 import pytest
@@ -20,6 +21,7 @@ from robolink.rtps.submessages import (
     encode_gap,
     encode_header,
     encode_heartbeat,
+    parse,
 )
 from robolink.rtps.writer import FRAGMENT, MOST_KEPT
 from tests.support.big_endian import big_endian
@@ -363,16 +365,46 @@ def test_what_waits_for_an_earlier_sample_is_bounded(monkeypatch: pytest.MonkeyP
 
 def test_an_acknowledgement_is_requested_before_much_is_under_way() -> None:
     network = Network()
-    a, _b, writer, _reader, _got = met(network)
-    for number in range(100):  # at once, long before a reminder is due
-        a.put(writer, sample(number))
-    network.run(0.01)
-    assert len(writer._history) < 32
+    a, _b, writer, _reader, got = met(network)
+    network.run(1)
     network.sent.clear()
-    for number in range(30):
+    most = 0
+    for number in range(2000):  # 10,000 a second
         a.put(writer, sample(number))
-        network.run(0.0005)
-    assert len(network.submessages(AckNack)) <= 2  # not one for each
+        network.run(0.0001)
+        most = max(most, len(writer._history))
+    assert most < 200
+    assert len(network.submessages(AckNack)) < 30  # not one for each
+    network.run(0.05)
+    assert (len(got), writer._history) == (2000, {})
+
+
+def test_a_reader_that_answers_only_in_a_pause_of_heartbeats_has_one() -> None:
+    """Fast DDS answers 5 ms after a heartbeat, and begins to wait anew with each."""
+    network = Network()
+    a, _b, writer, _reader, _got = met(network)
+    network.run(1)
+    network.sent.clear()
+    for number in range(1000):
+        a.put(writer, sample(number))
+        network.run(0.001)
+    network.run(1)
+    beats = [at for at, raw, _ in network.sent for each in parse(raw).submessages if isinstance(each, Heartbeat)]
+    assert 100 < len(beats) < 130
+    assert min(later - earlier for earlier, later in itertools.pairwise(beats)) > 0.007
+
+
+def test_the_last_of_a_row_of_samples_is_not_missed_for_long() -> None:
+    network = Network()
+    a, _b, writer, _reader, got = met(network)
+    network.run(1)
+    lost = sample(4)
+    network.faults = Faults(is_lost=lambda raw, address: lost in raw)
+    for number in range(5):
+        a.put(writer, sample(number))
+    network.faults = Faults()
+    network.run(0.03)
+    assert numbers(got) == [0, 1, 2, 3, 4]
 
 
 def test_a_lost_sample_is_requested_when_the_next_one_comes() -> None:
