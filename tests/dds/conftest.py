@@ -62,10 +62,10 @@ class Lab(NamedTuple):
         elsewhere.mkdir(exist_ok=True)
         return Command(self.domain, "bridge", "dds", folder=elsewhere)
 
-    def command(self, way: str, *words: str) -> Command:
+    def command(self, way: str, *words: str, merged: bool = False) -> Command:
         """Start a command of robolink on the network of robolink's peer."""
         environ = {"ROBOLINK_NETWORK": "dds"} if way == "direct" else {}
-        return Command(self.domain, *words, environ=environ, folder=self.folder)
+        return Command(self.domain, *words, environ=environ, folder=self.folder, merged=merged)
 
 
 class Scene(NamedTuple):

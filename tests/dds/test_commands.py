@@ -15,7 +15,8 @@ pytestmark = pytest.mark.processes
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list")])
 def test_a_command_that_looks_says_goodbye(words: tuple[str, ...]) -> None:
     """Its node would be shown for 20 s more: that is the lease of who just ends."""
-    came, went = [], []
+    came: list[bytes] = []
+    went: list[bytes] = []
     with free_dds_domain() as domain:
         witness = Participant(domain, on_peer=lambda peer, is_here: (came if is_here else went).append(peer.prefix))
         try:
