@@ -3,79 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import pytest
 
 from tests.dds.conftest import Lab, real
 from tests.dds.peers import Peer, until
-from tests.support.commands import Command
+from tests.dds.stage import Stage
 
 pytestmark = pytest.mark.processes
 
 EXCHANGED_WITHIN = 2.5
 """How long after the last one is ready, in s; 1.5 s on a quiet machine. One heartbeat of Fast DDS would be three."""
-
-STRING = "std_msgs/msg/String"
-
-
-class Stage:
-    """Parts of a system by their names, each started when the test says so."""
-
-    def __init__(self, lab: Lab, distribution: str, way: str) -> None:
-        self.lab, self.distribution, self.way = lab, distribution, way
-        self.parts: dict[str, Peer | Command] = {}
-        self._stack = contextlib.ExitStack()
-        self._serial = 0
-
-    def start(self, part: str) -> None:
-        makers: dict[str, Callable[[], Peer | Command]] = {
-            "real": lambda: self.lab.real(self.distribution),
-            "ours": self.lab.direct if self.way == "direct" else self.lab.beside,
-            "bridge": self.lab.bridge,
-        }
-        made: Peer | Command = makers[part]()
-        self._stack.callback(made.__exit__, None, None, None)
-        self.parts[part] = made
-        if isinstance(made, Peer):
-            made.ready()
-            other = "ours" if part == "real" else "real"
-            made.ask("publisher", topic=f"of_{part}", type_name=STRING)
-            made.ask("subscription", topic=f"of_{other}", type_name=STRING)
-        else:
-            made.wait_for("")
-
-    def kill(self, part: str) -> None:
-        self.parts[part].kill()
-
-    def peer(self, part: str) -> Peer:
-        found = self.parts[part]
-        assert isinstance(found, Peer)
-        return found
-
-    def exchanged(self, within: float) -> float:
-        """Wait until messages arrive on both sides that are sent from now on; return how long that takes, in s."""
-        begun = time.monotonic()
-        self._serial += 1000
-
-        def both() -> bool:
-            self._serial += 1
-            came = []
-            for sender, receiver in (("real", "ours"), ("ours", "real")):
-                self.peer(sender).ask("publish", topic=f"of_{sender}", first=self._serial)
-                came.append(any(each["at"] > begun for each in self.peer(receiver).events(f"of_{sender}")))
-            return all(came)
-
-        until(both, "messages both ways", within)
-        return time.monotonic() - begun
-
-    def __enter__(self) -> Stage:
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self._stack.close()
-
 
 ORDERS = [
     ("kilted", "direct", ("ours", "real")),
