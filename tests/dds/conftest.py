@@ -7,7 +7,6 @@ dds`) or over Zenoh beside `robolink bridge dds` ("bridge"). Tests share a scene
 from __future__ import annotations
 
 import contextlib
-import importlib.util
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,11 +21,6 @@ from tests.support.commands import ROBOLINK, Command
 from tests.support.domains import free_dds_domain
 
 PROGRAMS = Path(__file__).parent / "programs"
-
-
-def skip_without_dds() -> None:
-    if importlib.util.find_spec("robolink.dds.network") is None:
-        pytest.skip("there is no --network dds yet")
 
 
 def real(name: str) -> list[str]:
@@ -56,8 +50,6 @@ class Lab(NamedTuple):
         return Peer([*ROBOLINK, "run"], name, environment(self.domain), self.folder)
 
     def bridge(self) -> Command:
-        if importlib.util.find_spec("robolink.cli.bridge") is None:
-            pytest.skip("there is no robolink bridge yet")
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir(exist_ok=True)
         return Command(self.domain, "bridge", "dds", folder=elsewhere)
@@ -90,7 +82,6 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def lab(programs: Path) -> Iterator[Lab]:
     """A domain of its own for a test that starts and ends processes."""
-    skip_without_dds()
     with free_dds_domain() as domain:
         yield Lab(domain, programs)
 
@@ -102,7 +93,6 @@ WAYS = [(distribution, way) for way in ("direct", "bridge") for distribution in 
 def scene(request: pytest.FixtureRequest, programs: Path) -> Iterator[Scene]:
     """A real ROS 2 and robolink, each way: the same processes for all tests of a way."""
     distribution, way = request.param
-    skip_without_dds()
     real(distribution)
     with contextlib.ExitStack() as stack:
         lab = Lab(stack.enter_context(free_dds_domain()), programs)
