@@ -202,7 +202,7 @@ class FakeWriter:
         self.participant, self.endpoint, self.on_match = participant, endpoint, on_match
         self.guid = endpoint.guid
         self.readers: dict[bytes, Endpoint] = {}
-        self.history: deque[tuple[bytes, Info]] = deque(maxlen=endpoint.qos.depth or None)
+        self.history: deque[tuple[bytes, Info]] = deque(maxlen=max(endpoint.qos.depth, 0) or None)
         self.number = 0
 
     def meet(self, other: Endpoint) -> None:
