@@ -81,7 +81,7 @@ class Participant:
         its datagrams, and a callback may want a lock whose holder waits for this one."""
         self._wakes_at = -math.inf
         """When the thread wakes up by itself."""
-        self._is_open = True
+        self._is_open, self._is_faulty = True, False
         self._thread = threading.Thread(target=self._run, name=f"rtps domain {domain}", daemon=True)
         self._thread.start()
 
@@ -221,7 +221,14 @@ class Participant:
 
     def _on_datagram(self, datagram: memoryview, source: Locator) -> None:
         with self._lock:
-            self._core.receive(time.monotonic(), datagram, source)
+            try:
+                self._core.receive(time.monotonic(), datagram, source)
+            except Exception:  # noqa: BLE001 - a fault of ours: what anybody sends must not end the participant
+                if not self._is_faulty:  # once: it may come with each datagram
+                    self._is_faulty = True
+                    _LOG.exception(
+                        "a datagram from %s:%s was not understood; more of this kind are not logged", *source
+                    )
             sent, calls = self._take()
         if sent or calls:
             self._act(sent, calls)

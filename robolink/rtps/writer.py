@@ -63,6 +63,8 @@ class Change(NamedTuple):
     is_key: bool
     is_kept: bool
     """For readers that come later; else only until all have acknowledged it."""
+    ends: float = math.inf
+    """When its lifespan is over, by the clock of `now`."""
 
     @property
     def size(self) -> int:
@@ -165,6 +167,7 @@ class StatefulWriter:
             wants_old: it requests the samples that are kept for readers that come later.
         """
         self.unmatch(guid)
+        self._trim(now)
         first = 1 if wants_old and self.qos.transient_local else self.last + 1
         proxy = ReaderProxy(guid, address, head, reliable and self.qos.reliable, first)
         self.readers[guid] = proxy
@@ -222,13 +225,14 @@ class StatefulWriter:
         """
         self.last = number = self.last + 1
         kept = self.qos.transient_local if is_kept is None else is_kept
-        change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, kept)
+        ends = math.inf if self.qos.lifespan is None else now + self.qos.lifespan
+        change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, kept, ends)
         reliable = any(route.reliable for route in self._routes.values())
         if kept or reliable:
             self._history[number] = change
             self._kept_bytes += change.size
             self._passing += not kept
-            self._trim()
+            self._trim(now)
         if self._routes:
             self._under_way += 1
             self._bytes_under_way += change.size
@@ -251,7 +255,11 @@ class StatefulWriter:
             self._kept_bytes -= change.size
             self._passing -= not change.is_kept
 
-    def _trim(self) -> None:
+    def _trim(self, now: float) -> None:
+        """Drop what is too old, or too much."""
+        if self.qos.lifespan is not None:
+            while self._history and self._history[self.first].ends <= now:
+                self._drop(self.first)
         if depth := self.qos.depth:
             while len(self._history) > depth:
                 self._drop(next(iter(self._history)))

@@ -138,6 +138,19 @@ def test_a_late_reader_that_does_not_want_old_samples_gets_the_new_ones() -> Non
     assert numbers(got) == [8]
 
 
+def test_a_late_reader_gets_no_sample_whose_lifespan_is_over() -> None:
+    network = Network()
+    a, b = pair(network)
+    qos = Qos(transient_local=True, depth=0, lifespan=1.0)
+    writer = a.writer(qos=qos)
+    for number in range(10):
+        a.put(writer, sample(number))
+        network.run(0.25)
+    _, got = b.reader(qos=qos)
+    network.run(1)
+    assert numbers(got) == [7, 8, 9]
+
+
 def test_a_late_best_effort_reader_gets_the_latched_samples() -> None:
     network = Network()
     a, b = pair(network)

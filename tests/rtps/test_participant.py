@@ -248,3 +248,29 @@ def test_an_idle_participant_sleeps(pair: tuple[Participant, Participant], monke
     # Up to its next search, once the first ones, which come in a row, are over: 0.4 s.
     wait_until(lambda: timeouts and timeouts[-1] > 0.5)
     assert len(timeouts) < 30
+
+
+def test_a_fault_at_a_datagram_is_logged_once_and_the_participant_goes_on(
+    pair: tuple[Participant, Participant], monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    a, b = pair
+    got: list[bytes] = []
+    reader = b.reader("rt/a", TYPE, ALL, lambda payload, _: got.append(payload))
+    writer = a.writer("rt/a", TYPE, ALL)
+    wait_until(lambda: writer.matched() and reader.matched())
+    receive = b._core.receive
+    faults: list[Locator] = []
+
+    def failing(now: float, datagram: memoryview, source: Locator) -> None:
+        if len(faults) < 5:
+            faults.append(source)
+            raise KeyError("a fault of ours")
+        receive(now, datagram, source)
+
+    monkeypatch.setattr(b._core, "receive", failing)
+    with caplog.at_level(logging.ERROR):
+        for number in range(10):
+            writer.put(sample(number))
+        wait_until(lambda: len(got) == 10)
+    assert numbers(got) == list(range(10))
+    assert len(caplog.records) == 1
