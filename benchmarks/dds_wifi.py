@@ -44,7 +44,7 @@ from tests.support.wireless import INTERFACE, Air, Link, missing, wireless
 
 DOMAIN = "97"
 Figures: TypeAlias = "list[dict[str, Any]]"
-PATIENCE = 60.0
+PATIENCE = 20.0
 LAST = 4.0
 """Seconds for which messages may still come after the last was sent."""
 

@@ -57,6 +57,7 @@ class Client:
             number = self._requests.put(payload, related=(self._replies.guid, 0))
             self._calls[number] = call, attachment
             call.forget = lambda: self._calls.pop(number, None)
+        self._replies.expect()
 
     def _on_reply(self, payload: bytes, info: Info) -> None:
         related = info.related
@@ -68,6 +69,8 @@ class Client:
             call, attachment = found
             call.answer(payload, self._reply_attachment(attachment, info))
             call.finish_one_of(info.writer[:12])
+        if self._calls:
+            self._replies.expect()
 
     def _reply_attachment(self, requested: bytes, info: Info) -> bytes:
         """Return the attachment of a reply: as over Zenoh, the request's number and its client's gid."""

@@ -231,6 +231,11 @@ class Core:
             self._arm(writer)
         return number
 
+    def expect(self, now: float, reader: StatefulReader) -> None:
+        """See to it that a reader gets what it expects, though its writers may not say soon that they sent it."""
+        reader.expect(now)
+        self._arm(reader)
+
     def goodbye(self) -> None:
         """Tell everybody that this participant is gone."""
         self._discovery.goodbye()

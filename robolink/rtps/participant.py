@@ -176,6 +176,12 @@ class Participant:
         self._send(sent, is_wake)
         return number
 
+    def _expect(self, local: LocalReader) -> None:
+        with self._lock:
+            self._core.expect(time.monotonic(), local)
+            sent, is_wake = self._finish()
+        self._send(sent, is_wake)
+
     def _remove(self, local: LocalWriter | LocalReader) -> None:
         with self._lock:
             if not self._is_open:
@@ -298,6 +304,14 @@ class Reader:
         """Return the GUIDs of the writers that it is matched with."""
         with self._participant._lock:
             return [*self._local.writers]
+
+    def expect(self) -> None:
+        """Say that a sample should come soon, such as a reply: if none does, the writers are asked what they sent.
+
+        Else a sample that was lost, and behind which nothing comes, may be repaired late: a Fast DDS says only every
+        3 s what it has sent.
+        """
+        self._participant._expect(self._local)
 
     def close(self) -> None:
         """Withdraw it. A sample that is on its way to the sink meanwhile may still come. Safe to call twice."""

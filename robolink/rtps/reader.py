@@ -37,6 +37,9 @@ _FEW_FRAGMENTS = 6
 _SAME_ANSWER = 0.005
 """Seconds in which an acknowledgement is not repeated: one for each fragment would leave no time to receive them."""
 
+_POKE_AFTER, _POKES = 0.1, 6
+"""Seconds until writers are asked for something that is expected, twice as long each time; and how often."""
+
 Deliver = Callable[[Buffer, Info], object]
 
 
@@ -186,7 +189,8 @@ class StatefulReader:
         self.writers: dict[bytes, WriterProxy] = {}
         self.due = math.inf
         """When `tick` is to be called."""
-        self._send, self._deliver = send, deliver
+        self._send, self._deliver_next = send, deliver
+        self._poke_at, self._poked = math.inf, 0
         self._room = Room() if room is None else room
         self._largest = largest
 
@@ -215,6 +219,26 @@ class StatefulReader:
             return False
         self._room.give_back(proxy, proxy.bytes)
         return True
+
+    def expect(self, now: float) -> None:
+        """Ask the writers what they have if nothing comes of them for a while.
+
+        Of a lost sample behind which nothing comes a reader hears only when its writer says what it has, and a Fast DDS
+        does so every 3 s.
+        """
+        self._poke_at, self._poked = now + _POKE_AFTER, 0
+        self.due = min(self.due, self._poke_at)
+
+    def _poke(self, now: float) -> None:
+        for proxy in self.writers.values():
+            if proxy.reliable and proxy.is_known:
+                self._acknack(proxy, proxy.base, [], final=False)
+        self._poked += 1
+        self._poke_at = now + _POKE_AFTER * 2**self._poked if self._poked < _POKES else math.inf
+
+    def _deliver(self, payload: Buffer, info: Info) -> None:
+        self._poke_at = math.inf
+        self._deliver_next(payload, info)
 
     # What writers send
 
@@ -378,7 +402,9 @@ class StatefulReader:
         """Request again what was requested and has not come."""
         if now < self.due:
             return
-        due = math.inf
+        if now >= self._poke_at:
+            self._poke(now)
+        due = self._poke_at
         for proxy in self.writers.values():
             if now >= proxy.due:
                 proxy.due = math.inf

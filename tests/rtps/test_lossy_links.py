@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robolink.rtps import Qos
-from robolink.rtps.submessages import Gap, NackFrag
+from robolink.rtps.submessages import AckNack, Gap, NackFrag
 from robolink.rtps.writer import FRAGMENT
 from tests.support.rtps_network import Faults, Network, numbers, sample
 
@@ -47,3 +47,37 @@ def test_a_datagram_to_another_machine_fits_into_a_frame(host: str, largest: int
     network.run(20, until=lambda: len(got) == len(sizes))
     assert [len(each) for each in got] == sizes
     assert largest / 2 < max(len(raw) for _, raw, _ in network.sent) <= largest
+
+
+def test_a_lost_sample_that_is_expected_comes_though_its_writer_does_not_remind(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A Fast DDS reminds its readers every 3 s: by then a service's caller may have given up."""
+    network = Network()
+    a, b = network.join(), network.join("fastdds")
+    reader, got = a.reader(qos=Qos())
+    writer = b.writer(qos=Qos())
+    assert network.run(5, until=lambda: bool(writer.readers) and reader.writers[writer.guid].is_known)
+    monkeypatch.setattr(writer, "_expect", lambda now: None)
+    network.faults = Faults(is_lost=lambda raw, address: sample(7) in raw)
+    a.core.expect(network.now, reader)
+    b.put(writer, sample(7))
+    network.faults = Faults()
+    network.sent.clear()
+    network.run(0.15, until=lambda: bool(got))
+    assert numbers(got) == [7]
+    network.sent.clear()
+    network.run(10)
+    assert not [nack for nack in network.submessages(AckNack) if nack.writer == writer.entity and not nack.final]
+
+
+def test_what_never_comes_is_asked_for_a_few_times_only() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    reader, _ = a.reader(qos=Qos())
+    writer = b.writer(qos=Qos())
+    assert network.run(5, until=lambda: bool(writer.readers) and reader.writers[writer.guid].is_known)
+    network.sent.clear()
+    a.core.expect(network.now, reader)
+    network.run(60)
+    assert len([nack for nack in network.submessages(AckNack) if not nack.final]) == 6
