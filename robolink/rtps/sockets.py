@@ -140,6 +140,8 @@ class Sockets:
         self._far = [pair.metatraffic for pair in self._pairs[1:]]
         self._group = self._join()
         self._paced = 0
+        self._stalled: set[socket.socket] = set()
+        """Those whose last datagram found no room."""
         self._views: list[memoryview] = []
         self._waking = threading.Event()
         self._selector = selectors.DefaultSelector()  # not select(): it knows no file numbers above 1023
@@ -299,7 +301,9 @@ class Sockets:
                 time.sleep(_PACE_PAUSE)
 
     def _send(self, sock: socket.socket, address: Locator, buffers: Sequence[Buffer]) -> None:
-        for _ in range(_FULL_TRIES):
+        # Who has waited in vain does not wait again until something gets through: a sample is thousands of datagrams.
+        is_stalled = sock in self._stalled
+        for _ in range(1 if is_stalled else _FULL_TRIES):
             try:
                 if len(buffers) == 1:
                     sock.sendto(buffers[0], address)
@@ -308,9 +312,13 @@ class Sockets:
                 else:
                     sock.sendmsg(buffers, [], 0, address)  # the kernel collects the pieces: no copy of ours
             except BlockingIOError:
-                time.sleep(_FULL_PAUSE)
+                if not is_stalled:
+                    time.sleep(_FULL_PAUSE)
             else:
+                if is_stalled:
+                    self._stalled.discard(sock)
                 return
+        self._stalled.add(sock)
         raise OSError(errno.ENOBUFS, "no room for what is to be sent")
 
     def _count(self, error: Exception) -> None:

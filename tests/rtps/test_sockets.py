@@ -204,15 +204,34 @@ def test_a_full_buffer_is_waited_for_but_not_forever(
     assert (sum(slept) < 0.1, one.counts.errors) == (True, {"ENOBUFS": 1})
 
 
+def test_a_link_that_stands_still_is_waited_for_once(
+    pair: tuple[Sockets, Sockets], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else 6 MB to another machine would take a minute and a half of its publisher, in 5,000 datagrams."""
+    one, other = pair
+    slept: list[float] = []
+    monkeypatch.setattr("robolink.rtps.sockets.time.sleep", slept.append)
+    broken = _Broken(BlockingIOError(), times=200)
+    monkeypatch.setitem(one._senders, LOOPBACK, [broken])
+    for _ in range(101):
+        one.send(other.default, [b"x"])
+    assert (one.counts.sent, one.counts.lost, len(slept)) == (0, 101, 100)
+    broken.left = 0
+    one.send(other.default, [b"x"])
+    broken.left = 3
+    one.send(other.default, [b"x"])  # it is waited for again
+    assert (one.counts.sent, len(slept)) == (2, 103)
+
+
 class _Broken:
     """A socket that refuses to send, for so many times."""
 
     def __init__(self, error: OSError, times: int = 1000) -> None:
-        self._error, self._left = error, times
+        self._error, self.left = error, times
 
     def sendto(self, _raw: bytes, _address: tuple[str, int]) -> None:
-        self._left -= 1
-        if self._left >= 0:
+        self.left -= 1
+        if self.left >= 0:
             raise self._error
 
 
