@@ -67,6 +67,7 @@ class Lane:
             "Arrival", ["target", "content"], namespace={"__post_init__": self._queue.put}, gc=False
         )
         self._thread: threading.Thread | None = None
+        self._is_over = False
 
     def sink(self, target: Target) -> functools.partial[Any]:
         """Return the sink that a transport is given: it queues its argument for `target`, without Python code."""
@@ -82,7 +83,8 @@ class Lane:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the thread, if there is one, once it has carried what waits."""
+        """End the thread, if there is one; but for a few samples it drops those that wait."""
+        self._is_over = True
         if self._thread is not None:
             self._queue.put(None)
             self._thread.join()
@@ -117,11 +119,11 @@ class Lane:
             self._fail(f"{type(error).__name__}: {error}")
 
     def _is_flooded(self, behind: int, content: Any) -> bool:
-        return behind > MOST_WAITING or behind * self._size(content) > MOST_BYTES_WAITING
+        return self._is_over or behind > MOST_WAITING or behind * self._size(content) > MOST_BYTES_WAITING
 
     def _drop(self) -> None:
         self.dropped += 1
-        if self.dropped == 1:
+        if self.dropped == 1 and not self._is_over:
             get_logger("robolink.dds").warning(
                 "messages come faster than the other side takes them: the oldest are dropped (said once)"
             )

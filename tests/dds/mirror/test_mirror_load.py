@@ -125,3 +125,29 @@ def test_threads_of_its_own(scene: Mirrored) -> None:
     mirror.close()
     mirror.close()
     assert all(len(session.tokens(graph_pattern(0))) == 2 for _, _, session in ends)
+
+
+def test_an_end_does_not_wait_for_all_that_is_to_be_carried(scene: Mirrored) -> None:
+    source = scene.a.session()
+    lane = lanes.Lane(source)
+    began, go_on = threading.Event(), threading.Event()
+    carried: list[bytes] = []
+
+    class Slow:
+        droppable = True
+
+        def deliver(self, content: tuple[bytes, bytes]) -> None:
+            began.set()
+            go_on.wait(10.0)
+            carried.append(content[0])
+
+    lane.start("slow")
+    sink = lane.sink(Slow())
+    for number in range(1000):
+        sink((b"%d" % number, b""))
+    began.wait(10.0)
+    threading.Timer(0.05, go_on.set).start()
+    lane.stop()
+    assert carried[0] == b"0"
+    assert len(carried) < 50
+    lane.stop()
