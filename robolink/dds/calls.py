@@ -24,8 +24,8 @@ class Call:
         self._waiting: list[object] = []
         """Servers that have not answered yet: GUIDs of others' request readers, and queries of this session."""
         self._is_open, self._is_sent = True, False
-        self.forget: Callable[[], object] = lambda: None
-        """Function by which the client forgets the call."""
+        self.on_over: list[Callable[[], object]] = []
+        """Functions by which the client forgets the call."""
 
     def expect(self, server: object) -> None:
         """Expect an answer."""
@@ -77,7 +77,8 @@ class Call:
         with self._lock:
             self._is_open = False
             close_gate(self._gate)
-        self.forget()
+        for forget in self.on_over:
+            forget()
         self._on_end(self)
 
 

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from robolink.dds.forms import Header, has_header, split_header, with_header
 from robolink.dds.names import Role
 from robolink.dds.nodes import Guids
 from robolink.dds.profiles import announced
@@ -19,6 +20,7 @@ from robolink.wire import pack_attachment
 
 if TYPE_CHECKING:
     from robolink.dds.services import Services
+    from robolink.rtps import Writer
 
 _MOST_HELD = 100
 """Most requests that wait for a sink, and most replies that wait for their client's reader."""
@@ -32,8 +34,10 @@ class Identity(NamedTuple):
     client: bytes
     """GUID of the reader for which the reply is meant; of the writer of the request if that did not name one."""
     number: int
-    is_reader: bool
+    is_reader: bool = False
     """True if it is the reader's."""
+    header: Header | None = None
+    """Header of the request, which the reply repeats."""
 
 
 def identity_of(info: Info) -> Identity:
@@ -42,17 +46,16 @@ def identity_of(info: Info) -> Identity:
     rmw_fastrtps's clients put the GUID of the reader of their replies in the request's related identity.
     """
     if info.related is not None and info.related[0] != _NOBODY:
-        return Identity(info.related[0], info.number, True)
-    return Identity(info.writer, info.number, False)
+        return Identity(info.related[0], info.number, is_reader=True)
+    return Identity(info.writer, info.number)
 
 
 class Server:
-    """A service on DDS: a reader of requests and a writer of replies."""
-
-    on_guids: Callable[[], object]
+    """A service on DDS: a reader of requests and a writer of replies, a second one where clients expect a header."""
 
     def __init__(self, services: Services, stream: Stream, qos: QoSProfile, gate: Sink | None = None) -> None:
         self.stream, self.has_token = stream, False
+        self.on_guids: Callable[[], object] = lambda: None
         self._services, self._gate = services, gate
         self._lock = fork_lock()
         self._held: deque[RemoteQuery] = deque(maxlen=_MOST_HELD)
@@ -64,19 +67,31 @@ class Server:
         self._open()
 
     def _open(self) -> None:
-        participant = self._services.participant
+        self._replies = self._make_writer(headers=False)
+        self._with_headers: Writer | None = None
+        topic, type_name = self.stream.place_of(Role.REQUEST)
+        self._requests = self._services.participant.reader(
+            topic, type_name, self._qos, self._on_request, user_data=self._services.user_data(self.stream, Role.REQUEST)
+        )
+
+    def _make_writer(self, *, headers: bool) -> Writer:
         topic, type_name = self.stream.place_of(Role.REPLY)
-        self._replies = participant.writer(
+        return self._services.participant.writer(
             topic,
             type_name,
             self._qos,
             user_data=self._services.user_data(self.stream, Role.REPLY),
+            accepts=lambda reader: has_header(reader.vendor) == headers,
             on_match=self._on_client,
         )
-        topic, type_name = self.stream.place_of(Role.REQUEST)
-        self._requests = participant.reader(
-            topic, type_name, self._qos, self._on_request, user_data=self._services.user_data(self.stream, Role.REQUEST)
-        )
+
+    def speak_with_headers(self) -> None:
+        """Write to clients that expect a header, too, from now on."""
+        with self._lock:
+            if self._with_headers is not None:
+                return
+            self._with_headers = self._make_writer(headers=True)
+        self.on_guids()
 
     @property
     def is_free(self) -> bool:
@@ -86,7 +101,8 @@ class Server:
     @property
     def guids(self) -> Guids:
         """GUIDs of what it has on DDS."""
-        return Guids((self._requests.guid,), (self._replies.guid,))
+        more = () if self._with_headers is None else (self._with_headers.guid,)
+        return Guids((self._requests.guid,), (self._replies.guid, *more))
 
     def take_token(self, qos: QoSProfile) -> None:
         """Belong to an announced service, with its profile."""
@@ -95,13 +111,21 @@ class Server:
             self._close_endpoints()
             self._qos = announced(qos)
             self._open()
+            self._services.introduce(self)
 
     # Requests
 
     def _on_request(self, payload: bytes, info: Info) -> None:
         gid = self._services.gids.get(info.writer, info.writer)
         attachment = pack_attachment(info.number, info.timestamp or clocks.now(), gid)
-        query = RemoteQuery(self, payload, attachment, identity_of(info))
+        identity = identity_of(info)
+        if has_header(self._services.vendor_of(info.writer)):
+            split = split_header(payload)
+            if split is None:
+                return  # not a request
+            header, payload = split
+            identity = Identity(info.writer, info.number, header=header)
+        query = RemoteQuery(self, payload, attachment, identity)
         gate = self._gate
         if gate is None:
             self._hold(query)
@@ -151,7 +175,10 @@ class Server:
         return any(each[:12] == identity.client[:12] for each in self._clients)
 
     def _send(self, identity: Identity, payload: bytes) -> None:
-        self._replies.put(payload, related=(identity.client, identity.number))
+        if identity.header is None:
+            self._replies.put(payload, related=(identity.client, identity.number))
+        elif self._with_headers is not None:
+            self._with_headers.put(with_header(payload, identity.header))
 
     def _on_client(self, reader: Endpoint, came: bool) -> None:
         with self._lock:
@@ -178,8 +205,9 @@ class Server:
         self._close_endpoints()
 
     def _close_endpoints(self) -> None:
-        self._requests.close()
-        self._replies.close()
+        for endpoint in (self._requests, self._replies, self._with_headers):
+            if endpoint is not None:
+                endpoint.close()
         self._clients.clear()
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from robolink.dds.calls import Call, LocalQuery
 from robolink.dds.clients import Client
+from robolink.dds.forms import has_header
 from robolink.dds.hashes import Hashes
 from robolink.dds.names import Role, user_data_of
 from robolink.dds.servers import DEFAULT, Server
@@ -27,6 +28,7 @@ from robolink.wire import NO_HASH, EndpointToken, gid_in
 if TYPE_CHECKING:
     from robolink.rtps import Participant
 
+_OF_SERVICES = (f"{Role.REQUEST.value}/", f"{Role.REPLY.value}/")
 _PARTS = {Role.REQUEST: "Request", Role.REPLY: "Response"}
 
 
@@ -51,8 +53,10 @@ class Services:
         """Services of this session by their keys."""
         self._clients: dict[bytes, Client] = {}
         self._anonymous: dict[Place, Client] = {}
-        self._others: dict[Place, set[bytes]] = {}
-        """Servers of others: their readers of requests."""
+        self._others: dict[Place, dict[bytes, bytes]] = {}
+        """Readers of requests and of replies of others, by topic and type; then their vendors by their GUIDs."""
+        self._vendors: dict[bytes, bytes] = {}
+        """Vendor of each participant, by its prefix."""
         self._calls: weakref.WeakSet[Call] = weakref.WeakSet()
 
     def user_data(self, stream: Stream, role: Role) -> bytes:
@@ -89,7 +93,14 @@ class Services:
 
     def _make(self, server: Server) -> Server:
         self._servers.setdefault((server.stream.name, server.stream.type_name), []).append(server)
+        self.introduce(server)
         return server
+
+    def introduce(self, one: Server | Client) -> None:
+        """Have a server or client speak with headers if such peers are there."""
+        role = Role.REPLY if isinstance(one, Server) else Role.REQUEST
+        if any(map(has_header, self._others.get(one.stream.place_of(role), {}).values())):
+            one.speak_with_headers()
 
     def _is_second(self, stream: Stream) -> bool:
         """Return whether DDS has no such key: Humble's, beside the one with a hash."""
@@ -102,6 +113,7 @@ class Services:
         """Make an announced client."""
         with self._declaring(stream):
             client = self._clients[gid] = Client(self, stream, token.qos, gid)
+            self.introduce(client)
             return client
 
     def call(self, key: str, payload: bytes, attachment: bytes, sink: Sink) -> Call:
@@ -127,27 +139,42 @@ class Services:
             return None
         if place not in self._anonymous:
             self._anonymous[place] = Client(self, stream, DEFAULT)
+            self.introduce(self._anonymous[place])
         return self._anonymous[place]
 
     # Others
 
     def on_endpoint(self, endpoint: Endpoint, came: bool) -> None:
         """Note an endpoint of another participant."""
-        if endpoint.is_writer:
+        if endpoint.is_writer or not endpoint.topic.startswith(_OF_SERVICES):
             return
         place = endpoint.topic, endpoint.type_name
         with self._lock:
-            there = self._others.get(place, set()) - {endpoint.guid}
+            there = self._others.setdefault(place, {})
             if came:
-                there.add(endpoint.guid)
-            if there:
-                self._others[place] = there
+                there[endpoint.guid] = endpoint.vendor
             else:
-                self._others.pop(place, None)
+                there.pop(endpoint.guid, None)
+                if not there:
+                    del self._others[place]
+            if came and has_header(endpoint.vendor):
+                for each in self._all():
+                    self.introduce(each)
+
+    def _all(self) -> list[Server | Client]:
+        servers = [each for some in self._servers.values() for each in some]
+        return [*servers, *self._clients.values(), *self._anonymous.values()]
+
+    def vendor_of(self, guid: bytes) -> bytes:
+        """Return the vendor of an endpoint's participant; empty if that has gone."""
+        return self._vendors.get(guid[:12], b"")
 
     def on_peer(self, peer: Peer, came: bool) -> None:
-        """Note that a participant has gone."""
-        if not came:
+        """Note that a participant came or went."""
+        if came:
+            self._vendors[peer.prefix] = peer.vendor
+        else:
+            self._vendors.pop(peer.prefix, None)
             with self._lock:
                 servers = [each for some in self._servers.values() for each in some]
             for server in servers:

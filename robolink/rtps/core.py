@@ -47,9 +47,9 @@ _DISCOVERY_WRITERS = {ids.PUBLICATIONS_WRITER, ids.SUBSCRIPTIONS_WRITER}
 class LocalWriter(StatefulWriter):
     """A writer of a program."""
 
-    def __init__(self, data: EndpointData, send: Send, on_match: OnMatch | None) -> None:
+    def __init__(self, data: EndpointData, send: Send, accepts: Accepts | None, on_match: OnMatch | None) -> None:
         super().__init__(data.guid, data.qos, send)
-        self.data, self.on_match = data, on_match
+        self.data, self.accepts, self.on_match = data, accepts, on_match
 
 
 class LocalReader(StatefulReader):
@@ -153,11 +153,18 @@ class Core:
     # Endpoints of programs
 
     def add_writer(
-        self, now: float, topic: str, type_name: str, qos: Qos, user_data: bytes = b"", on_match: OnMatch | None = None
+        self,
+        now: float,
+        topic: str,
+        type_name: str,
+        qos: Qos,
+        user_data: bytes = b"",
+        accepts: Accepts | None = None,
+        on_match: OnMatch | None = None,
     ) -> LocalWriter:
         """Make a writer, announce it, and match it with the readers that are known."""
         data = self._endpoint(ids.KEYLESS_WRITER, topic, type_name, qos, user_data)
-        writer = LocalWriter(data, self._send, on_match)
+        writer = LocalWriter(data, self._send, accepts, on_match)
         self._writers[writer.entity] = writer
         self._add(now, writer)
         return writer
@@ -257,6 +264,8 @@ class Core:
     def _match(self, now: float, local: LocalWriter | LocalReader, remote: Remote) -> None:
         endpoint = remote.endpoint
         qos = endpoint.qos
+        if local.accepts is not None and not local.accepts(endpoint):
+            return
         if isinstance(local, LocalWriter):
             # Topics with keys have other kinds; a sample without a key would be of no instance there.
             if endpoint.guid[-1] != ids.KEYLESS_READER or not fits(local.qos, qos):
@@ -267,8 +276,6 @@ class Core:
             local.match(now, endpoint.guid, remote.address, remote.head, reliable=qos.reliable, wants_old=wants_old)
         else:
             if endpoint.guid[-1] != ids.KEYLESS_WRITER or not fits(qos, local.qos):
-                return
-            if local.accepts is not None and not local.accepts(endpoint):
                 return
             if len(local.writers) >= MOST_MATCHES:
                 return

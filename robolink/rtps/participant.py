@@ -92,6 +92,7 @@ class Participant:
         qos: Qos = Qos(),  # noqa: B008 - a NamedTuple
         *,
         user_data: bytes = b"",
+        accepts: Accepts | None = None,
         on_match: OnMatch | None = None,
     ) -> Writer:
         """Make a writer, and announce it.
@@ -101,10 +102,12 @@ class Participant:
             type_name: the same.
             qos: what it offers.
             user_data: what others get with its announcement.
+            accepts: decides which readers it is matched with, of those that fit: all or none of a participant, since
+                one datagram may be for all readers there. It is called on any thread and must not call the participant.
             on_match: is called with readers that it is matched with (True), or was.
         """
         with self._lock:
-            local = self._core.add_writer(time.monotonic(), topic, type_name, qos, user_data, on_match)
+            local = self._core.add_writer(time.monotonic(), topic, type_name, qos, user_data, accepts, on_match)
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
         return Writer(self, local)

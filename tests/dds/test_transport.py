@@ -36,7 +36,7 @@ from robolink.wire import (
     parse_token,
     unpack_attachment,
 )
-from tests.support.fake_rtps import EPROSIMA, FakeNetwork, FakeParticipant, FakeReader, FakeWriter
+from tests.support.fake_rtps import ECLIPSE, EPROSIMA, FakeNetwork, FakeParticipant, FakeReader, FakeWriter
 from tests.support.transports import GRAPH, Caller, Desk, Ear, latched, until
 
 STRING, SET_BOOL = "std_msgs/msg/String", "std_srvs/srv/SetBool"
@@ -230,7 +230,7 @@ def test_an_endpoint_has_a_token_once_its_node_is_known(
 ) -> None:
     other = Other(fake, enclave_data("/robot"))
     if nodes_first:
-        node = FakeWriter(other.participant, other.participant._endpoint(True, "x", "y", Qos(), b""), print)
+        node = FakeWriter(other.participant, other.participant._endpoint(True, "x", "y", Qos(), b""), print, bool)
         ahead = other.participant.prefix + (int.from_bytes(node.guid[12:15], "big") + 1).to_bytes(3, "big") + b"\3"
         node.guid = ahead
         other.tell("real", node)
@@ -542,6 +542,51 @@ def test_a_reply_names_its_request_and_its_client(fake: FakeNetwork, ours: DdsTr
         (b"re second", (whom, 2)),
         (b"re first", (whom, 1)),
     ]
+
+
+HEAD = b"\0\1\0\0"
+
+
+def test_each_server_gets_a_request_in_its_own_form(fake: FakeNetwork, ours: DdsTransport) -> None:
+    """Cyclone's services have a header in the payload, where the others have inline QoS: each reads its own only."""
+    ours.announce(text := token(ours, EndpointKind.CLIENT, "/set", SET_BOOL, SERVICE_HASH))
+    fast, cyclone = Other(fake), Other(fake, vendor=ECLIPSE)
+    (_, fast_replies), (_, cyclone_replies) = fast.server(), cyclone.server()
+    client = ours._services._clients[gid_of(text)]
+    until(lambda: client._with_headers is not None and len(client._with_headers.matched()) == 1)
+    until(lambda: len(client._requests.matched()) == 1 and all((fast_replies.matched(), cyclone_replies.matched())))
+    caller = Caller(ours, HEAD + b"please  ", SERVICE, pack_attachment(7, 1, gid_of(text)))
+    until(lambda: bool(fast.got) and bool(cyclone.got))
+    assert [payload for payload, _ in fast.got] == [HEAD + b"please  "]
+    ((asked, info),) = cyclone.got
+    assert (info.related, asked[:4], asked[20:]) == (None, HEAD, b"please  ")
+    cyclone_replies.put(HEAD + bytes(8) + asked[12:20] + b"of another client")
+    cyclone_replies.put(HEAD)
+    cyclone_replies.put(asked[:20] + b"by header")
+    fast_replies.put(HEAD + b"beside it", related=(client._replies.guid, fast.got[0][1].number))
+    assert sorted(caller.answers()) == [HEAD + b"beside it", HEAD + b"by header"]
+
+
+@pytest.mark.parametrize("head", [HEAD, bytes(4)], ids=["little", "big"])
+def test_each_client_gets_a_reply_in_its_own_form(fake: FakeNetwork, ours: DdsTransport, head: bytes) -> None:
+    fast, cyclone = Other(fake), Other(fake, vendor=ECLIPSE)
+    ours.announce(node_token(ours))
+    desk = Desk(ours, SERVICE)
+    ours.announce(token(ours, EndpointKind.SERVICE, "/set", SET_BOOL, SERVICE_HASH))
+    (reader, writer), (_, headed) = fast.client(), cyclone.client()
+    until(lambda: bool(writer.matched()) and bool(headed.matched()) and bool(reader.matched()))
+    header = bytes(range(8)) + (99).to_bytes(8, "little" if head[1] else "big")
+    headed.put(b"short")
+    headed.put(head + header + b"one")
+    writer.put(head + b"two", related=(reader.guid, 0))
+    queries = [desk.next(), desk.next()]
+    assert sorted(each.payload for each in queries) == [head + b"one", head + b"two"]
+    for query in queries:
+        query.reply(head + b"re " + query.payload[4:], b"")
+    until(lambda: bool(fast.got) and bool(cyclone.got))
+    assert [payload for payload, _ in cyclone.got] == [head + header + b"re one"]
+    assert [payload for payload, _ in fast.got] == [head + b"re two"]
+    until(lambda: bool(fast.listed) and [len(each.writers) for each in fast.listed[-1].nodes] == [2])
 
 
 def test_a_reply_waits_until_its_clients_reader_is_met(fake: FakeNetwork, ours: DdsTransport) -> None:

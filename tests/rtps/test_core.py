@@ -223,6 +223,18 @@ def test_a_reader_gets_only_what_the_writers_send_that_it_is_matched_with() -> N
     assert (numbers(got), numbers(others)) == ([0, 1, 2, 3, 4], [10, 11, 12, 13, 14])
 
 
+def test_a_writer_sends_only_to_the_participants_that_it_accepts() -> None:
+    network = Network()
+    a, b = pair(network)
+    c = network.join()
+    writer = a.writer(accepts=lambda endpoint: endpoint.guid[:12] == c.core.prefix)
+    (_, refused), (_, accepted) = b.reader(), c.reader()
+    network.run(2)
+    a.put(writer, sample(1))
+    network.run(2)
+    assert (len(refused), len(accepted)) == (0, 1)
+
+
 def test_topics_with_keys_are_not_matched() -> None:
     network = Network()
     a, b = pair(network)

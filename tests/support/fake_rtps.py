@@ -135,9 +135,11 @@ class FakeParticipant:
         qos: Qos = USUAL,
         *,
         user_data: bytes = b"",
+        accepts: Callable[[Endpoint], bool] | None = None,
         on_match: Any = None,
     ) -> FakeWriter:
-        writer = FakeWriter(self, self._endpoint(True, topic, type_name, qos, user_data), on_match or nothing)
+        endpoint = self._endpoint(True, topic, type_name, qos, user_data)
+        writer = FakeWriter(self, endpoint, on_match or nothing, accepts or (lambda _: True))
         self._add(writer)
         return writer
 
@@ -197,9 +199,13 @@ class FakeParticipant:
 
 class FakeWriter:
     def __init__(
-        self, participant: FakeParticipant, endpoint: Endpoint, on_match: Callable[[Endpoint, bool], object]
+        self,
+        participant: FakeParticipant,
+        endpoint: Endpoint,
+        on_match: Callable[[Endpoint, bool], object],
+        accepts: Callable[[Endpoint], bool],
     ) -> None:
-        self.participant, self.endpoint, self.on_match = participant, endpoint, on_match
+        self.participant, self.endpoint, self.on_match, self.accepts = participant, endpoint, on_match, accepts
         self.guid = endpoint.guid
         self.readers: dict[bytes, Endpoint] = {}
         self.history: deque[tuple[bytes, Info]] = deque(maxlen=max(endpoint.qos.depth, 0) or None)
@@ -209,7 +215,7 @@ class FakeWriter:
         mine = self.endpoint
         if other.is_writer or (other.topic, other.type_name) != (mine.topic, mine.type_name):
             return
-        if other.guid not in self.readers and not shortcomings(other.qos, mine.qos):
+        if other.guid not in self.readers and not shortcomings(other.qos, mine.qos) and self.accepts(other):
             self.readers[other.guid] = other
             if other.qos.transient_local:
                 for payload, info in [*self.history]:
@@ -280,6 +286,9 @@ class FakeReader:
     def lose(self, other: Endpoint) -> None:
         if self.writers.pop(other.guid, None) is not None:
             self.on_match(other, False)
+
+    def expect(self) -> None:
+        """Nothing is lost here that one could ask for."""
 
     def matched(self) -> list[bytes]:
         return [*self.writers]

@@ -79,9 +79,15 @@ class Member:
         if self.is_up:
             self.network.carry(self.rewrite(b"".join(buffers)), address, self.default)
 
-    def writer(self, topic: str = "rt/a", qos: Qos = USUAL, type_name: str = TYPE) -> LocalWriter:
+    def writer(
+        self,
+        topic: str = "rt/a",
+        qos: Qos = USUAL,
+        type_name: str = TYPE,
+        accepts: Callable[[Endpoint], bool] | None = None,
+    ) -> LocalWriter:
         """Make a writer."""
-        return self.core.add_writer(self.network.now, topic, type_name, qos)
+        return self.core.add_writer(self.network.now, topic, type_name, qos, accepts=accepts)
 
     def reader(
         self,
