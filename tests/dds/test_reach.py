@@ -53,14 +53,20 @@ MET = {
 """Whom each of ours meets, and is met by. A real node with the range SUBNET, or with peers, meets the same."""
 
 
+def environment(**own: str) -> dict[str, str]:
+    """Return the environment of a process."""
+    clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK"))}
+    return clean | {"ROS_DOMAIN_ID": "94", "ROBOLINK_WORKSPACE": ""} | own
+
+
 class Machine:
     """A process with nodes on a machine."""
 
-    def __init__(self, stack: ExitStack, host: str, python: list[str], nodes: dict[str, dict[str, str]]) -> None:
-        clean = {name: each for name, each in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK"))}
-        environ = clean | {"ROS_DOMAIN_ID": "94", "ROBOLINK_NETWORK": "dds", "ROBOLINK_WORKSPACE": ""}
+    def __init__(
+        self, stack: ExitStack, host: str, python: list[str], nodes: dict[str, dict[str, str]], network: str = "dds"
+    ) -> None:
         command = ["ip", "netns", "exec", host, *python, str(PROGRAMS / "ranges.py"), json.dumps(nodes)]
-        self._process = start(stack, command, environ)
+        self._process = start(stack, command, environment(ROBOLINK_NETWORK=network))
 
     def ready(self) -> None:
         """Wait until its nodes are there."""
@@ -101,3 +107,23 @@ def test_each_range_meets_whom_it_should(distribution: str) -> None:
         while time.monotonic() < end:
             assert seen() == expected
             time.sleep(QUIET / 4)
+
+
+def test_a_bridge_on_an_interface_finds_static_peers_where_no_multicast_passes() -> None:
+    with ExitStack() as stack:
+        here, there = stack.enter_context(stalls.two_routed_hosts())
+        places = {"at_here": here, "at_there": there}
+        theirs = [Machine(stack, host, real("kilted"), {name: {}}) for name, host in places.items()]
+        ours = Machine(stack, here, [*ROBOLINK, "run"], {"ours": {}}, network="localhost")
+        bridge = ["ip", "netns", "exec", here, *ROBOLINK, "bridge", "dds", "--interface", "cable"]
+        assert line(start(stack, bridge, environment(**{PEERS: "10.78.0.1"}))).startswith("robolink bridge")
+        for each in (*theirs, ours):
+            each.ready()
+
+        def seen() -> set[str]:
+            return {name for name in ours.sees()["ours"] if name.startswith("at_")}
+
+        end = time.monotonic() + PATIENCE
+        while seen() != set(places) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert seen() == set(places)
