@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from robolink.cli.doctor.facts import Check, Facts, Verdict, listed
+from robolink.networks.request import RANGE
 
 SMALLEST_BUFFER = 2 << 20
 """Receive buffer in bytes from which images of some megabytes arrive without being repaired."""
@@ -66,7 +67,8 @@ def _on_other_ways(facts: Facts) -> list[str]:
 def _of_environment(facts: Facts) -> list[str]:
     """Return warnings of settings by which ROS 2 nodes that are started from here could not be met, or hardly."""
     value, found = facts.environ.get(_BUILTIN, "").partition("?")[0].upper(), []
-    if value in _UNMET:
+    # With LOCALHOST rmw_fastrtps chooses shared memory and UDP, whatever the variable says.
+    if value in _UNMET and facts.environ.get(RANGE, "").upper() != "LOCALHOST":
         found.append(
             f"{_BUILTIN}={value}: ROS 2 nodes started from here are on {_UNMET[value]} and cannot be met: unset it"
         )

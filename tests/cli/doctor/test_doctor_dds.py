@@ -83,6 +83,8 @@ def test_a_setting_with_which_nobody_is_met(value: str) -> None:
 @pytest.mark.parametrize("value", ["", "DEFAULT", "UDPv4"])
 def test_a_setting_with_which_all_are_met(value: str) -> None:
     assert dds(Facts(environ={"FASTDDS_BUILTIN_TRANSPORTS": value})).level == OK
+    confined = {"FASTDDS_BUILTIN_TRANSPORTS": "SHM", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    assert dds(Facts(environ=confined)).level == OK
 
 
 def test_a_small_receive_buffer_matters_where_there_is_dds() -> None:
