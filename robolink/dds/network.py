@@ -50,8 +50,8 @@ def open_session(
     reach = reach_of(environ)
 
     def join(number: int, *, user_data: bytes, **options: object) -> Participant:
-        told = user_data.rstrip(b"\0") + mark + b"\0" if mark else user_data
-        return Participant(number, reach=reach, user_data=told, **options)  # type: ignore[arg-type]
+        announced = user_data.rstrip(b"\0") + mark + b"\0" if mark else user_data
+        return Participant(number, reach=reach, user_data=announced, **options)  # type: ignore[arg-type]
 
     return DdsTransport(join, domain, enclave or "/")
 

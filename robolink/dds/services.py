@@ -18,9 +18,9 @@ from robolink.dds.hashes import Hashes
 from robolink.dds.names import Role, user_data_of
 from robolink.dds.servers import DEFAULT, Server
 from robolink.dds.streams import Place, Stream, stream_of
-from robolink.exceptions import TransportClosedError
 from robolink.rtps import Endpoint, Peer
 from robolink.system.waits import fork_lock
+from robolink.transport import lifetime
 from robolink.transport.base import Sink, refuse_giant
 from robolink.transport.gates import close_gate, make_gate
 from robolink.wire import NO_HASH, EndpointToken, gid_in
@@ -186,7 +186,7 @@ class Services:
     def _declaring(self, stream: Stream) -> Iterator[None]:
         with self._lock:
             if self._why_closed:
-                raise TransportClosedError(self._why_closed)
+                raise lifetime.closed(self._why_closed)
             self._hashes.note(stream.type_name, stream.type_hash)
             yield
 

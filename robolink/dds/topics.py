@@ -18,11 +18,11 @@ from robolink.dds.nodes import Guids
 from robolink.dds.profiles import announced
 from robolink.dds.readings import Reading
 from robolink.dds.streams import Place, Stream, stream_of
-from robolink.exceptions import TransportClosedError
 from robolink.qos import QoSProfile
 from robolink.rtps import Endpoint
 from robolink.system import heap
 from robolink.system.waits import fork_lock
+from robolink.transport import lifetime
 from robolink.transport.base import Sink, refuse_giant
 from robolink.transport.gates import close_gate, make_gate
 from robolink.wire import NO_HASH, EndpointToken, format_qos, gid_in
@@ -146,7 +146,7 @@ class Topics:
     def check(self) -> None:
         """Raise TransportClosedError once the session is closed."""
         if self.why_closed:
-            raise TransportClosedError(self.why_closed)
+            raise lifetime.closed(self.why_closed)
 
     def _local_topic(self, key: str) -> LocalTopic:
         return self._local.setdefault(key, LocalTopic())
@@ -215,7 +215,7 @@ class DdsOutlet:
         Raises TransportClosedError after close, TransportError for more than LARGEST_PAYLOAD bytes.
         """
         if self._why_closed:
-            raise TransportClosedError(self._why_closed)
+            raise lifetime.closed(self._why_closed)
         if len(payload) >= heap.LARGE:
             refuse_giant(self._stream.key, payload)
             heap.note(len(payload))
@@ -233,7 +233,7 @@ class DdsOutlet:
         topics = self._topics
         with topics.lock:
             if self._why_closed:
-                raise TransportClosedError(self._why_closed)
+                raise lifetime.closed(self._why_closed)
             publication = topics.publications.get(gid)
             if publication is None:
                 # One whose publisher has just been withdrawn sends no more on DDS.

@@ -22,7 +22,7 @@ from robolink.dds.streams import Stream, stream_of
 from robolink.dds.tokens import Tokens
 from robolink.dds.topics import Topics
 from robolink.dds.worker import Worker
-from robolink.exceptions import TransportClosedError, TransportError, WireError
+from robolink.exceptions import TransportError, WireError
 from robolink.qos import QoSProfile
 from robolink.rtps import Endpoint, Info, Peer, Qos
 from robolink.system import clocks
@@ -243,7 +243,7 @@ class DdsTransport(Transport):
 
     def _check(self) -> None:
         if self._why_closed:
-            raise TransportClosedError(self._why_closed)
+            raise lifetime.closed(self._why_closed)
 
     def close(self) -> None:
         """Leave the domain, and tell the others so. Safe to call twice."""

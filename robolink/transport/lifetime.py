@@ -12,7 +12,7 @@ import weakref
 from collections.abc import Callable, Iterator
 from typing import Protocol, TypeVar
 
-from robolink.exceptions import TransportError
+from robolink.exceptions import TransportClosedError, TransportError
 from robolink.system import clocks, exit_code, waits
 
 _Item = TypeVar("_Item")
@@ -170,6 +170,12 @@ def end_if_daemon() -> None:
         end = SystemExit()
         _last.append(end)  # its traceback holds what the thread was about to undeclare: it would be freed now
         raise end
+
+
+def closed(why: str) -> TransportClosedError:
+    """Return the error for the use of what is closed; a daemon thread ends silently instead, if that is by the exit."""
+    end_if_daemon()
+    return TransportClosedError(why)
 
 
 def is_ending() -> bool:

@@ -271,6 +271,36 @@ def test_a_forked_child_is_told_and_may_begin_anew(dds_domain: int) -> None:
     assert done.stdout.splitlines() == ["True", "True", "True", "own", "parent 5"], done.stderr
 
 
+ENDING = """
+import sys, threading, time
+from robolink.dds.network import open_session
+from robolink.qos import QoSProfile
+
+KEY = "0/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported"
+session, stranger = (open_session(int(sys.argv[1]), {}) for _ in range(2))
+outlet, came = session.advertise(KEY, QoSProfile(depth=1)), threading.Event()
+stranger.subscribe(KEY, QoSProfile(depth=1), lambda arrived: came.set())
+session.watch("**", lambda token, alive: None)
+
+
+def flood():
+    while True:
+        outlet.put(bytes(1000), b"")
+
+
+threading.Thread(target=flood, daemon=True).start()
+came.wait(10)
+sys.exit(3)
+"""
+
+
+@pytest.mark.processes
+def test_the_interpreter_exits_with_sessions_left_open(dds_domain: int) -> None:
+    command = [sys.executable, "-c", ENDING, str(dds_domain)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    assert (done.returncode, done.stderr) == (3, "")
+
+
 def test_what_is_closed_says_so(dds_domain: int) -> None:
     session = network.open_session(dds_domain, {})
     session.close()
