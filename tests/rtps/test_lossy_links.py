@@ -58,7 +58,7 @@ def test_a_lost_sample_that_is_expected_comes_though_its_writer_does_not_remind(
     reader, got = a.reader(qos=Qos())
     writer = b.writer(qos=Qos())
     assert network.run(5, until=lambda: bool(writer.readers) and reader.writers[writer.guid].is_known)
-    monkeypatch.setattr(writer, "_expect", lambda now: None)
+    monkeypatch.setattr(writer, "_expect", lambda *_: None)
     network.faults = Faults(is_lost=lambda raw, address: sample(7) in raw)
     a.core.expect(network.now, reader)
     b.put(writer, sample(7))
