@@ -158,14 +158,14 @@ class Discovery:
         if now >= self._renew_at:
             self._renew_at = now + _RENEW_EVERY
             for address in self._at:
-                self._send(address, [self._announcement], False)
+                self._send(address, [self._announcement], 0.0)
         if now >= self._search_at:
             self._announced += 1
             self._search_at = now + (_BURST_EVERY if self._announced < _BURST else _SEARCH_EVERY)
             for address in self._network.search:
                 prefix = self._at.get(address)
                 if prefix is None or not self._is_known_to(prefix):
-                    self._send(address, [self._announcement], False)
+                    self._send(address, [self._announcement], 0.0)
 
     def _is_known_to(self, prefix: bytes) -> bool:
         """Return whether a participant has met us: then it has told what it has, or asked what we have.
@@ -183,7 +183,7 @@ class Discovery:
         key = encode_key(self._me.prefix + ids.PARTICIPANT_ENTITY)
         raw = encode_data(ids.UNKNOWN_ENTITY, ids.SPDP_WRITER, 2, key, inline, is_key=True)
         for state in self.peers.values():
-            self._send(state.metatraffic, [self._header, raw], False)
+            self._send(state.metatraffic, [self._header, raw], 0.0)
 
     def on_participant(self, now: float, prefix: bytes, data: Data, source: Locator) -> None:
         """Take an announcement of a participant.
@@ -206,7 +206,7 @@ class Discovery:
                 state.peer = peer
                 self._on_peer(peer, True)
             if not self._is_known_to(prefix):
-                self._send(state.metatraffic, [self._announcement], False)
+                self._send(state.metatraffic, [self._announcement], 0.0)
         elif said.domain is None or said.domain == self._me.domain:
             self._meet(now, said, source)
 
@@ -230,7 +230,7 @@ class Discovery:
         self.due = min(self.due, now + peer.lease)
         self._on_peer(peer, True)
         # It has to know us before it can use what follows.
-        self._send(metatraffic, [self._announcement], False)
+        self._send(metatraffic, [self._announcement], 0.0)
         for is_writer, reader in ((True, ids.PUBLICATIONS_READER), (False, ids.SUBSCRIPTIONS_READER)):
             self.writers[is_writer].match(now, said.prefix + reader, metatraffic, head, reliable=True, wants_old=True)
         for is_writer, writer in ((True, ids.PUBLICATIONS_WRITER), (False, ids.SUBSCRIPTIONS_WRITER)):

@@ -58,7 +58,7 @@ class Participant:
         prefix = ids.VENDOR_ROBOLINK + os.urandom(10)
         self.guid = prefix + ids.PARTICIPANT_ENTITY
         self._sockets = Sockets(domain, reach)
-        self._outbox: list[tuple[Locator, list[Buffer], bool]] = []
+        self._outbox: list[tuple[Locator, list[Buffer], float]] = []
         append = self._outbox.append
         me = ParticipantData(
             prefix,
@@ -72,7 +72,7 @@ class Participant:
         self._core = Core(
             me,
             Resolve(self._sockets.search, self._sockets.bounds.choose),
-            lambda address, buffers, is_paced: append((address, buffers, is_paced)),
+            lambda address, buffers, pause: append((address, buffers, pause)),
             on_peer=on_peer,
             on_endpoint=on_endpoint,
         )
@@ -193,7 +193,7 @@ class Participant:
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
 
-    def _finish(self) -> tuple[Sequence[tuple[Locator, list[Buffer], bool]], bool]:
+    def _finish(self) -> tuple[Sequence[tuple[Locator, list[Buffer], float]], bool]:
         """Return, under the lock, what is to be sent, and whether the thread must be woken up."""
         sent = self._outbox[:]
         self._outbox.clear()
@@ -202,10 +202,10 @@ class Participant:
             self._wakes_at = -math.inf  # once is enough
         return sent, is_wake
 
-    def _send(self, sent: Sequence[tuple[Locator, list[Buffer], bool]], is_wake: bool) -> None:
+    def _send(self, sent: Sequence[tuple[Locator, list[Buffer], float]], is_wake: bool) -> None:
         send = self._sockets.send
-        for address, buffers, is_paced in sent:
-            send(address, buffers, is_paced)
+        for address, buffers, pause in sent:
+            send(address, buffers, pause)
         if is_wake:
             self._sockets.wake()
 
@@ -242,7 +242,7 @@ class Participant:
         if sent or calls:
             self._act(sent, calls)
 
-    def _take(self) -> tuple[Sequence[tuple[Locator, list[Buffer], bool]], Sequence[Any]]:
+    def _take(self) -> tuple[Sequence[tuple[Locator, list[Buffer], float]], Sequence[Any]]:
         sent = calls = _NOTHING
         if self._outbox:
             sent = tuple(self._outbox)
@@ -252,10 +252,10 @@ class Participant:
             self._core.calls.clear()
         return sent, calls
 
-    def _act(self, sent: Sequence[tuple[Locator, list[Buffer], bool]], calls: Sequence[Any]) -> None:
+    def _act(self, sent: Sequence[tuple[Locator, list[Buffer], float]], calls: Sequence[Any]) -> None:
         send = self._sockets.send
-        for address, buffers, is_paced in sent:
-            send(address, buffers, is_paced)
+        for address, buffers, pause in sent:
+            send(address, buffers, pause)
         for function, what, how in calls:
             try:
                 function(what, how)

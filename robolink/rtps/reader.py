@@ -456,7 +456,7 @@ class StatefulReader:
     def _acknack(self, proxy: WriterProxy, base: int, missing: Sequence[int], *, final: bool) -> None:
         proxy.serial += 1
         raw = encode_acknack(self.entity, proxy.guid[12:], base, missing, proxy.serial & 0x7FFFFFFF, final=final)
-        self._send(proxy.address, [proxy.head, raw], False)
+        self._send(proxy.address, [proxy.head, raw], 0.0)
 
     def _request_fragments(self, now: float, proxy: WriterProxy, ended: int = 0) -> None:
         """Request missing fragments that should have come.
@@ -479,7 +479,7 @@ class StatefulReader:
         missing = parts.missing()[: max(came, _FEW_FRAGMENTS)]
         proxy.serial += 1
         raw = encode_nack_frag(self.entity, proxy.guid[12:], number, missing, proxy.serial & 0x7FFFFFFF)
-        self._send(proxy.address, [proxy.head, raw], False)
+        self._send(proxy.address, [proxy.head, raw], 0.0)
         # As long as each request brings something, the next does not wait longer.
         parts.delay = _FRAGMENTS_LATE if parts.grows else min(2 * parts.delay, _ASK_SLOWEST)
         parts.until, parts.had = missing[-1], len(parts.pieces)

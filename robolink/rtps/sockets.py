@@ -44,9 +44,9 @@ _LARGEST = 65536
 _AT_ONCE = 64
 """Datagrams that are read of one socket before the others have their turn."""
 
-_PACE_BYTES, _PACE_PAUSE = 48 << 10, 30e-6
-"""A receiver with the usual buffer has room for three fragments of 63 kB. Unpaced, 5 of 60 images of 1 MB came; with a
-pause after each fragment, 59; of such a length a pause takes some 0.1 ms on Linux."""
+_PACE_BYTES = 48 << 10
+"""Between two pauses. A receiver with the usual buffer has room for three fragments of 63 kB: unpaced, 5 of 60 images
+of 1 MB came, with a pause after each fragment 59. The shortest pause takes some 0.1 ms on Linux."""
 _FULL_PAUSE, _FULL_TRIES = 0.0002, 100
 """How long a datagram waits for room in our own buffer, before it is lost."""
 
@@ -276,13 +276,13 @@ class Sockets:
 
     # Sending
 
-    def send(self, address: Locator, buffers: Sequence[Buffer], paced: bool = False) -> None:
+    def send(self, address: Locator, buffers: Sequence[Buffer], pause: float = 0.0) -> None:
         """Send a datagram. Call it without holding a lock: it may sleep.
 
         Args:
             address: where to; the group goes to all interfaces that we use.
             buffers: the pieces of the datagram.
-            paced: it is one of many in a row, between which the receiver needs pauses.
+            pause: it is one of many in a row: sleep for so many seconds after some of them, for the receiver.
         """
         senders = self._senders.get(address[0], self._far)
         if not senders:
@@ -294,11 +294,11 @@ class Sockets:
             except (OSError, OverflowError) as error:
                 # ENOBUFS, ENETUNREACH, EHOSTDOWN, ECONNREFUSED of an earlier one, EMSGSIZE, EPERM of a firewall ...
                 self._count(error)
-        if paced:
+        if pause:
             self._paced += sum(map(len, buffers))
             if self._paced >= _PACE_BYTES:
                 self._paced = 0
-                time.sleep(_PACE_PAUSE)
+                time.sleep(pause)
 
     def _send(self, sock: socket.socket, address: Locator, buffers: Sequence[Buffer]) -> None:
         # Who has waited in vain does not wait again until something gets through: a sample is thousands of datagrams.

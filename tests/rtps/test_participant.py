@@ -102,9 +102,9 @@ def test_nobody_waits_for_a_large_sample_to_leave_but_its_own_writer(
     wait_until(lambda: large.matched() and small.matched())
     send, is_paused, goes_on = a._sockets.send, threading.Event(), threading.Event()
 
-    def pausing(address: Locator, buffers: Any, paced: bool = False) -> None:
-        send(address, buffers, paced)
-        if paced and threading.current_thread() is thread:
+    def pausing(address: Locator, buffers: Any, pause: float = 0.0) -> None:
+        send(address, buffers, pause)
+        if pause and threading.current_thread() is thread:
             is_paused.set()
             assert goes_on.wait(10)
 

@@ -120,7 +120,7 @@ def test_one_that_is_too_large_is_counted(pair: tuple[Sockets, Sockets]) -> None
 def test_a_mebibyte_in_paced_fragments_comes_through(pair: tuple[Sockets, Sockets]) -> None:
     one, other = pair
     for number in range(16):
-        one.send(other.default, [number.to_bytes(2, "big"), bytes(63 * 1024)], paced=True)
+        one.send(other.default, [number.to_bytes(2, "big"), bytes(63 * 1024)], pause=1e-5)
     assert sorted({int.from_bytes(raw[:2], "big") for raw, _ in receive(other, 16)}) == list(range(16))
 
 
@@ -129,11 +129,11 @@ def test_pauses_are_between_large_ones_only(pair: tuple[Sockets, Sockets], monke
     slept: list[float] = []
     monkeypatch.setattr("robolink.rtps.sockets.time.sleep", slept.append)
     for _ in range(10):
-        one.send(other.default, [bytes(1000)], paced=True)
+        one.send(other.default, [bytes(1000)], pause=1e-5)
         one.send(other.default, [bytes(60_000)])
     assert slept == []
     for _ in range(3):
-        one.send(other.default, [bytes(60_000)], paced=True)
+        one.send(other.default, [bytes(60_000)], pause=1e-5)
     assert len(slept) == 3
 
 

@@ -75,7 +75,7 @@ class Member:
     def _on_peer(self, peer: Peer, came: bool) -> None:
         self.peers.append((peer.prefix, came))
 
-    def _send(self, address: Locator, buffers: Sequence[Buffer], is_paced: bool) -> None:
+    def _send(self, address: Locator, buffers: Sequence[Buffer], pause: float) -> None:
         if self.is_up:
             self.network.carry(self.rewrite(b"".join(buffers)), address, self.default)
 
