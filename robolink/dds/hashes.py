@@ -12,6 +12,9 @@ from robolink.interfaces import find_announced
 from robolink.message import type_hash
 from robolink.wire import NO_HASH
 
+MOST_UNKNOWN = 1000
+"""Most types that are looked for in vain: each costs a millisecond, and strangers may name as many as they like."""
+
 
 class Hashes:
     """Hash of each type: what this session itself uses, else that of the installed type, else NO_HASH."""
@@ -24,30 +27,37 @@ class Hashes:
         """
         self._on_learned = on_learned
         self._known: dict[str, str] = {}
+        self._unknown: set[str] = set()
 
     def note(self, type_name: str, text: str) -> None:
         """Note the hash that this session uses for a type."""
         if text == NO_HASH:
             return
-        before = self._known.get(type_name)
+        is_news = self._known.get(type_name) is None and (
+            type_name in self._unknown or len(self._unknown) >= MOST_UNKNOWN
+        )
         self._known[type_name] = text
-        if before == NO_HASH:
+        if is_news:
             self._on_learned(type_name)
 
     def of(self, type_name: str) -> str:
         """Return the hash of a type by its name; it may import the type."""
-        known = self._known.get(type_name)
-        if known is None:
-            known = self._known.setdefault(type_name, _installed(type_name))
-        return known
+        return self._of(type_name, "")
 
     def of_part(self, type_name: str, part: str) -> str:
         """Return the hash of a service's Request or Response."""
-        name = f"{type_name}.{part}"
+        return self._of(type_name, part)
+
+    def _of(self, type_name: str, part: str) -> str:
+        name = f"{type_name}.{part}" if part else type_name
         known = self._known.get(name)
-        if known is None:
-            known = self._known.setdefault(name, _installed(type_name, part))
-        return known
+        if known is not None or name in self._unknown or len(self._unknown) >= MOST_UNKNOWN:
+            return known or NO_HASH
+        found = _installed(type_name, part)
+        if found == NO_HASH:
+            self._unknown.add(name)
+            return NO_HASH
+        return self._known.setdefault(name, found)
 
 
 def _installed(type_name: str, part: str = "") -> str:

@@ -103,10 +103,11 @@ class Reading:
         self._lenient[way] = self._make(Qos(reliable=writer.qos.reliable, depth=self._requested.depth), way)
         self.on_guids()
         lacking = shortcomings(self._requested, writer.qos)
-        get_logger("robolink.dds").warning(
+        warning = (
             f"{self.stream.name}: a publisher offers less {' and '.join(lacking)} than a subscription here requests:"
             " it is heard in robolink, but a subscription of ROS 2 would get nothing from it over DDS"
         )
+        self._topics.post(lambda: get_logger("robolink.dds").warning(warning))
 
     def forget(self, writer: bytes) -> None:
         """Forget a writer that has gone."""

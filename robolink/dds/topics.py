@@ -41,14 +41,17 @@ class Topics:
     participant: Participant
     """Participant of the session, set once before anything is declared."""
 
-    def __init__(self, gids: dict[bytes, bytes], hashes: Hashes) -> None:
+    def __init__(
+        self, gids: dict[bytes, bytes], hashes: Hashes, post: Callable[[Callable[[], object]], object]
+    ) -> None:
         """Make it, without any.
 
         Args:
             gids: Global ids of others' endpoints by their GUIDs; one that is not there goes by its GUID.
             hashes: Table in which the hashes of the session's own types are noted.
+            post: Function that has something done on another thread, since the participant's must not wait.
         """
-        self.gids, self.hashes = gids, hashes
+        self.gids, self.hashes, self.post = gids, hashes, post
         self.lock = fork_lock()
         self.next_order = itertools.count().__next__
         self.why_closed = ""

@@ -81,7 +81,7 @@ class DdsTransport(Transport):
         self._hashes = Hashes(lambda name: self._worker.post(functools.partial(self._others.on_hash, name)))
         self._others = OtherNodes(domain, self._tokens, self._hashes)
         # Before the participant, which may tell of others at once.
-        self._topics = Topics(self._others.gids, self._hashes)
+        self._topics = Topics(self._others.gids, self._hashes, self._worker.post)
         self._services = Services(self._others.gids, self._hashes)
         try:
             self._participant = participant = open_participant(

@@ -438,6 +438,7 @@ def test_a_writer_that_offers_less_is_read_with_a_warning(
     assert ear.take(3) == [b"once"] * 3
     until(lambda: bool(other.listed) and [len(each.readers) for each in other.listed[-1].nodes] == [3])
     assert ear.arrived.empty()
+    ours._worker.catch_up(10.0)
     (warning,) = [line for line in capsys.readouterr().err.splitlines() if "durability" in line and "reliab" in line]
     assert "/talk: a publisher offers less reliability and durability than a subscription here requests" in warning
     assert "a subscription of ROS 2 would get nothing from it over DDS" in warning
