@@ -9,10 +9,12 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from robolink import Context
+from robolink.cli.main import main
 from robolink.dds import network
 from robolink.dds.network import meets, reach_of, refuse_security
 from robolink.dds.transport import DdsTransport
@@ -120,6 +122,24 @@ def test_a_network_of_another_package_that_is_broken_is_named(monkeypatch: pytes
     monkeypatch.setattr(kinds.NETWORKS, "get", broken)
     with pytest.raises(ExtensionError, match="adds 'can'"):
         connect("zenoh://", network="can")
+
+
+LAUNCH = "network: dds\nnodes: [{node: demo_nodes_py talker}]\n"
+
+
+@pytest.mark.parametrize("by_option", [True, False], ids=["by the option", "by the launch file"])
+def test_a_launch_file_is_refused_in_one_line_before_anything_starts(
+    by_option: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, value in (("ROBOLINK_NETWORK", ""), ("ROBOLINK_NETWORK_ASKED_BY", ""), ("ROS_SECURITY_ENABLE", "")):
+        monkeypatch.setenv(name, value)  # what the command sets is undone
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "nowhere")
+    file = tmp_path / "system.yaml"
+    file.write_text(LAUNCH.partition("\n")[2] if by_option else LAUNCH, encoding="utf-8")
+    assert main([*(["--network", "dds"] if by_option else []), "launch", str(file)]) == 1
+    assert capsys.readouterr().err == (
+        "robolink: ROS_AUTOMATIC_DISCOVERY_RANGE must be one of LOCALHOST, SUBNET, OFF, got 'nowhere'\n"
+    )
 
 
 # ---------------------------------------------------------------- sessions over sockets
