@@ -10,16 +10,18 @@ import contextlib
 import itertools
 import struct
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.dds.hashes import Hashes
 from robolink.dds.local_topics import LocalTopic
 from robolink.dds.nodes import Guids
-from robolink.dds.profiles import announced
+from robolink.dds.profiles import announced, shortcomings
 from robolink.dds.readings import Reading
 from robolink.dds.streams import Place, Stream, stream_of
+from robolink.logging import get_logger
 from robolink.qos import QoSProfile
 from robolink.rtps import Endpoint
+from robolink.rtps.ids import VENDOR_ROBOLINK
 from robolink.system import heap
 from robolink.system.waits import fork_lock
 from robolink.transport import lifetime
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 _STAMP_AT = 8
 _stamp_in: Callable[[bytes, int], tuple[int]] = struct.Struct("<q").unpack_from
 _ATTACHMENT_BYTES = 33
+
+EndT = TypeVar("EndT")
 
 
 class Topics:
@@ -57,6 +61,7 @@ class Topics:
         self.why_closed = ""
         self.publications: dict[bytes, Publication] = {}
         """Announced publishers, by gid."""
+        self._publications_at: dict[Place, list[Publication]] = {}
         self.changes = 0
         """Number of changes of `publications`."""
         self.writers: dict[Place, dict[bytes, Endpoint]] = {}
@@ -97,7 +102,10 @@ class Topics:
         with self._declaring(stream):
             publication = Publication(self, stream, token.qos, gid)
             self.publications[gid] = publication
+            self._publications_at.setdefault(stream.place, []).append(publication)
             self.changes += 1
+            for endpoint in [*self.listeners.get(stream.place, {}).values()]:
+                publication.meet(endpoint)
             return publication
 
     def announce_subscription(self, token: EndpointToken, stream: Stream) -> Reading:
@@ -163,8 +171,9 @@ class Topics:
         with self.lock:
             if came:
                 table.setdefault(place, {})[endpoint.guid] = endpoint
-                for reading in self.readings.get(place, ()) if endpoint.is_writer else ():
-                    reading.meet(endpoint)
+                ends = self.readings if endpoint.is_writer else self._publications_at
+                for each in ends.get(place, ()):
+                    each.meet(endpoint)
             elif place in table:
                 table[place].pop(endpoint.guid, None)
                 for reading in self.readings.get(place, ()):
@@ -183,11 +192,10 @@ class Topics:
                 self._subscriptions.pop(declared, None)
             elif isinstance(declared, Publication):
                 self.publications.pop(declared.gid, None)
+                _remove(self._publications_at, declared.stream.place, declared)
                 self.changes += 1
-            elif declared in (there := self.readings.get(declared.stream.place, [])):
-                there.remove(declared)
-                if not there:
-                    del self.readings[declared.stream.place]
+            else:
+                _remove(self.readings, declared.stream.place, declared)
 
     def close(self, why: str) -> None:
         """Close everything; the participant is closed after it, so that nothing is undeclared one by one."""
@@ -301,7 +309,7 @@ class DdsSubscription:
 
 
 class Publication:
-    """An announced publisher: its writer."""
+    """An announced publisher: its writer, which offers what the publisher does, as ROS 2 would."""
 
     on_guids: Callable[[], object]
 
@@ -311,12 +319,34 @@ class Publication:
             stream.topic, stream.dds_type, announced(qos), user_data=stream.user_data
         )
 
+        self._offered, self._has_warned = announced(qos), False
+
     @property
     def guids(self) -> Guids:
         """GUIDs of what it has on DDS."""
         return Guids(writers=(self.writer.guid,))
 
+    def meet(self, reader: Endpoint) -> None:
+        """Warn once of a subscription that requests more; one of robolink's hears of it all the same."""
+        lacking = shortcomings(reader.qos, self._offered)
+        if not lacking or self._has_warned or reader.vendor == VENDOR_ROBOLINK:
+            return
+        self._has_warned = True
+        warning = (
+            f"{self.stream.name}: a subscription of ROS 2 requests more {' and '.join(lacking)} than a publisher here"
+            " offers: over DDS it gets nothing from it"
+        )
+        self._topics.post(lambda: get_logger("robolink.dds").warning(warning))
+
     def withdraw(self) -> None:
         """End the writer, with the token."""
         self._topics.remove(self)
         self.writer.close()
+
+
+def _remove(table: dict[Place, list[EndT]], place: Place, end: EndT) -> None:
+    there = table.get(place, [])
+    if end in there:
+        there.remove(end)
+        if not there:
+            del table[place]

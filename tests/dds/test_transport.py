@@ -444,6 +444,28 @@ def test_a_writer_that_offers_less_is_read_with_a_warning(
     assert "a subscription of ROS 2 would get nothing from it over DDS" in warning
 
 
+@pytest.mark.parametrize("subscription_first", [True, False])
+def test_a_real_subscription_that_requests_more_is_warned_of_once(
+    fake: FakeNetwork, ours: DdsTransport, capsys: pytest.CaptureFixture[str], subscription_first: bool
+) -> None:
+    other, weak = Other(fake), QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    text = token(ours, EndpointKind.PUBLISHER, "/talk", STRING, HASH, weak)
+    if not subscription_first:
+        ours.announce(text)
+    other.subscription(), other.subscription()
+    until(lambda: len(ours._topics.listeners.get(PLACE, ())) == 2)
+    if subscription_first:
+        ours.announce(text)
+    robolinks, other_session = Ear(ours, TALK), open_session(fake)
+    Ear(other_session, TALK)
+    until(lambda: len(ours._topics.listeners[PLACE]) == 4)
+    ours._worker.catch_up(10.0)
+    (warning,) = [line for line in capsys.readouterr().err.splitlines() if "/talk" in line and "requests more" in line]
+    assert "requests more reliability than a publisher here offers: over DDS it gets nothing" in warning
+    assert robolinks.arrived.empty()
+    other_session.close()
+
+
 def test_a_writer_of_another_definition_is_not_read(fake: FakeNetwork, ours: DdsTransport) -> None:
     other, ear = Other(fake), Ear(ours, TALK)
     wrong, right = other.publisher(hash_text="RIHS01_" + "0" * 64), other.publisher()
