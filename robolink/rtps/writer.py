@@ -148,7 +148,7 @@ class StatefulWriter:
         self._under_way = self._bytes_under_way = 0
         """Since the last heartbeat that requested an acknowledgement."""
         self._beaten_at = -math.inf
-        """When the last heartbeat was sent."""
+        """When the last heartbeat for everybody was sent."""
         self._routes: dict[tuple[Locator, bytes], _Route] = {}
         """By address and participant."""
 
@@ -392,7 +392,6 @@ class StatefulWriter:
         if change is None or number < proxy.first:
             self._tell_gone(proxy, [number])
         elif missing and self._may_repair(now, proxy, len(missing) * fragment_of(proxy.address)):
-            self._beaten_at = now
             beat = self._beat(guid[12:], proxy.first, final=False)
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
         self._expect(now)
@@ -445,7 +444,6 @@ class StatefulWriter:
             bundle += (stamp, data)
             size += len(stamp) + len(data)
         if proxy.reliable and changes:
-            self._beaten_at = now
             bundle.append(self._beat(entity, proxy.first, final=False))
         self._flush(proxy, bundle)
 
