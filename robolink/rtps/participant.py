@@ -275,8 +275,8 @@ class Writer:
     def put(self, payload: Buffer, *, related: tuple[bytes, int] | None = None, timestamp: int = 0) -> int:
         """Send a sample on the caller's thread, and return its number; 0 after the participant was closed.
 
-        It does not wait for readers. A RELIABLE writer keeps what they have not acknowledged: the last `depth` samples,
-        or with a depth of 0 up to `MOST_KEPT` of them. Older ones are lost to a reader that is that slow.
+        It does not wait for readers. A RELIABLE writer keeps what they have not acknowledged: at least the last `depth`
+        samples, or with a depth of 0 up to `MOST_KEPT` of them. Older ones are lost to a reader that is that slow.
 
         Args:
             payload: serialized, with its header of 4 bytes. It is kept, not copied.

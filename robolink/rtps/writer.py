@@ -36,6 +36,11 @@ MOST_KEPT_BYTES = 256 << 20
 """What a writer that keeps all keeps at most. Then the oldest samples go, as with a depth: readers that did not have
 them get a GAP. So a reader that stands still costs no more than this, and `put` never waits."""
 
+_REPAIRED_DEPTHS, _MOST_REPAIRED, _MOST_REPAIRED_BYTES = 10, 100, 8 << 20
+"""How many times its depth a volatile writer keeps of what some have not acknowledged, and at most, in samples and in
+bytes. The depth says what a program that is slow gets; datagrams that were lost in a row of samples are another matter.
+"""
+
 _HEARTBEAT_AFTER, _HEARTBEAT_SLOWEST = 0.05, 1.0
 """Seconds until a reader that has not acknowledged is reminded; twice as long each time, up to the second."""
 _BEAT_EVERY, _BEAT_LATE = 0.008, 0.02
@@ -266,8 +271,9 @@ class StatefulWriter:
             while self._history and self._history[self.first].ends <= now:
                 self._drop(self.first)
         if depth := self.qos.depth:
-            while len(self._history) > depth:
-                self._drop(next(iter(self._history)))
+            most = depth if self.qos.transient_local else max(depth, min(_REPAIRED_DEPTHS * depth, _MOST_REPAIRED))
+            while (size := len(self._history)) > most or (size > depth and self._kept_bytes > _MOST_REPAIRED_BYTES):
+                self._drop(self.first)
             return
         while len(self._history) > self._most or (self._kept_bytes > MOST_KEPT_BYTES and len(self._history) > 1):
             self._drop(next(iter(self._history)))

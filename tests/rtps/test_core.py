@@ -162,16 +162,30 @@ def test_a_late_best_effort_reader_gets_the_latched_samples() -> None:
     assert numbers(got) == [2, 3, 4]
 
 
-def test_samples_beyond_the_depth_are_skipped_by_a_reader_that_lost_them() -> None:
+@pytest.mark.parametrize(
+    ("qos", "size", "kept"),
+    [
+        (Qos(depth=3), 12, 30),  # ten times as many, since they may all be lost in one row
+        (Qos(depth=20), 12, 100),
+        (Qos(depth=150), 12, 150),
+        (Qos(depth=3), 1_000_000, 8),  # as long as they are small
+        (Qos(depth=12), 1_000_000, 12),
+        (Qos(depth=3, transient_local=True), 12, 3),
+    ],
+)
+def test_samples_too_far_beyond_the_depth_are_skipped_by_a_reader_that_lost_them(
+    qos: Qos, size: int, kept: int
+) -> None:
     network = Network()
-    a, _, writer, _, got = met(network, Qos(depth=3))
+    a, _, writer, _, got = met(network, qos)
     network.faults = Faults(is_lost=lambda raw, address: True)
-    for number in range(10):
-        a.put(writer, sample(number))
+    total = 200 if size == 12 else 20
+    for number in range(total):
+        a.put(writer, sample(number, size))
     network.run(0.3)
     network.faults = Faults()
     network.run(3)
-    assert numbers(got) == [7, 8, 9]
+    assert numbers(got) == list(range(total - kept, total))
 
 
 def test_holes_in_the_history_are_told_by_a_gap() -> None:

@@ -14,7 +14,7 @@ def test_a_sample_that_newer_ones_replaced_is_not_told_by_a_gap() -> None:
     """By a heartbeat, which is what readers of Fast DDS need."""
     network = Network()
     a, b = network.join(), network.join()
-    writer, (reader, got) = a.writer(qos=Qos(depth=2)), b.reader(qos=Qos(depth=2))
+    writer, (reader, got) = a.writer(qos=Qos(depth=2, transient_local=True)), b.reader(qos=Qos(depth=2))
     assert network.run(5, until=lambda: bool(writer.readers) and bool(reader.writers))
     seen: list[bytes] = []
 
