@@ -194,14 +194,20 @@ class Services:
         """Forget what is closed."""
         with self._lock:
             if isinstance(declared, Serving):
-                self._handles[declared.key] = tuple(
-                    each for each in self._handles.get(declared.key, ()) if each is not declared
-                )
+                left = tuple(each for each in self._handles.get(declared.key, ()) if each is not declared)
+                if left:
+                    self._handles[declared.key] = left
+                else:
+                    self._handles.pop(declared.key, None)
             elif isinstance(declared, Client):
                 self._clients.pop(declared.gid, None)
             else:
                 place = declared.stream.name, declared.stream.type_name
-                self._servers[place] = [each for each in self._servers.get(place, ()) if each is not declared]
+                others = [each for each in self._servers.get(place, ()) if each is not declared]
+                if others:
+                    self._servers[place] = others
+                else:
+                    self._servers.pop(place, None)
 
     def close(self, why: str) -> None:
         """End all calls, and serve no more."""
