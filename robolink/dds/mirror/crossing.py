@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from robolink.dds.mirror.sides import Later, Side
@@ -79,19 +79,21 @@ class Crossing:
             # The number and time are the sender's; the gid is that of its announcement on the other side.
             forward.put(payload, numbers_in(attachment) + forward.sender)
 
-    def admit(self, gid: bytes, forward: Forward) -> None:
-        """Send the samples of this publisher on from now on, those that wait first."""
-        self._forwards[gid] = forward
-        _, waiting = self._parked.pop(gid, (0.0, ()))
-        for payload, attachment in waiting:
-            self._bytes_parked -= len(payload)
-            if forward.is_new(attachment):
-                forward.last = attachment
-                forward.put(payload, numbers_in(attachment) + forward.sender)
+    def admit(self, gids: Iterable[bytes], forward: Forward) -> None:
+        """Send the samples of the publisher with these gids on from now on, those that wait first."""
+        for gid in gids:
+            self._forwards[gid] = forward
+            _, waiting = self._parked.pop(gid, (0.0, ()))
+            for payload, attachment in waiting:
+                self._bytes_parked -= len(payload)
+                if forward.is_new(attachment):
+                    forward.last = attachment
+                    forward.put(payload, numbers_in(attachment) + forward.sender)
 
-    def dismiss(self, gid: bytes) -> None:
+    def dismiss(self, gids: Iterable[bytes]) -> None:
         """Forget a publisher."""
-        self._forwards.pop(gid, None)
+        for gid in gids:
+            self._forwards.pop(gid, None)
 
     def sift(self, more: int) -> None:
         """Drop what comes twice, by its number, from now on (1), or no longer (-1); as often as it was begun."""

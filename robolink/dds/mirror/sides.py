@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import itertools
 import secrets
@@ -111,6 +112,21 @@ class Side:
     def key(self, token: EndpointToken) -> str:
         """Return the key of an endpoint here."""
         return format_key(DataKey(self.domain, token.name, token.type_name, token.type_hash))
+
+
+def gids_of(gid: bytes, token: EndpointToken) -> tuple[bytes, ...]:
+    """Return the gids by which samples of an endpoint come, the first ones first.
+
+    On DDS a sample may come before it is known which node its writer belongs to, and so before there is a token; then
+    its gid is the writer's GUID, of which the token has the two halves as session and id (`robolink.dds.graph`).
+    """
+    if len(token.session) == 2 * _PREFIX_BYTES and len(token.endpoint_id) == 2 * _ENTITY_BYTES:
+        with contextlib.suppress(ValueError):  # an id that is not in hex
+            return bytes.fromhex(token.session + token.endpoint_id), gid
+    return (gid,)
+
+
+_PREFIX_BYTES, _ENTITY_BYTES = 12, 4
 
 
 class Later(NamedTuple):

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from robolink.dds.mirror.crossing import Crossing, Forward
-from robolink.dds.mirror.sides import Announced, Later, Side
+from robolink.dds.mirror.sides import Announced, Later, Side, gids_of
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.transport.base import Handle, Outlet
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
@@ -133,7 +133,7 @@ class TopicFlow:
         forward = Forward(outlet, publication.announced.sender, waits=not publication.latched)
         key = self._source.key(publication.token)
         publication.flowing = flowing = _Flowing(outlet, forward, key)
-        self._source.lane.post(functools.partial(self.crossing.admit, gid, forward))
+        self._source.lane.post(functools.partial(self.crossing.admit, gids_of(gid, publication.token), forward))
         self._users[key] = self._users.get(key, 0) + 1
         self._feed(key)
         if not publication.latched:
@@ -156,7 +156,7 @@ class TopicFlow:
 
         def end() -> None:
             flowing.forward.open()
-            self.crossing.dismiss(gid)
+            self.crossing.dismiss(gids_of(gid, publication.token))
             flowing.outlet.close()
 
         self._source.lane.post(end)  # behind the samples that wait
