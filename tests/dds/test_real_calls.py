@@ -51,6 +51,17 @@ def test_calls_of_a_type_that_the_bridge_does_not_know_get_each_its_own_answer(s
     assert [client.answer(number) for client, number in asked.items()] == [values, values]
 
 
+def test_a_megabyte_is_requested_and_answered(scene: Scene) -> None:
+    text = "0123456789" * 100_000
+    for server, client in pairs(scene):
+        name = f"large_of_{server.name}"
+        server.ask("service", name=name, type_name=BASIC_TYPES)
+        client.ask("client", name=name, type_name=BASIC_TYPES)
+        ready(client, name)
+        answer = client.ask("call", name=name, type_name=BASIC_TYPES, values={"string_value": text})
+        assert answer["string_value"] == text
+
+
 def test_a_call_takes_milliseconds(scene: Scene) -> None:
     """Whoever waits for an answer is woken up by it, not by a timeout: that would be 50 ms here."""
     for server, client in pairs(scene):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import statistics
 import time
 from typing import Any, NamedTuple
@@ -149,3 +150,52 @@ def test_ours_hears_who_offers_less_as_over_zenoh(
     until(heard, f"a message on {topic}")
     assert all(each["right"] for each in scene.ours.events(topic))
     forget(scene, topic)
+
+
+KINDS: dict[str, dict[str, bool]] = {"best_effort": {"reliable": False}, "reliable": {}, "latched": {"latched": True}}
+
+
+def test_ours_is_matched_with_a_real_subscription_by_the_rules_of_dds(scene: Scene) -> None:
+    """What offers less than is requested does not come; it would not from a real node either."""
+    order = list(KINDS)
+    topics = {f"pair_{offers}_{requests}": (offers, requests) for offers in order for requests in order}
+    for topic, (offers, requests) in topics.items():
+        scene.ours.ask("publisher", topic=topic, type_name="std_msgs/msg/String", **KINDS[offers])
+        scene.real.ask("subscription", topic=topic, type_name="std_msgs/msg/String", **KINDS[requests])
+    fits = {topic for topic, pair in topics.items() if order.index(pair[0]) >= order.index(pair[1])}
+
+    def came() -> bool:
+        for topic in topics:
+            scene.ours.ask("publish", topic=topic)
+        return all(scene.real.events(topic) for topic in fits)
+
+    until(came, f"messages on {sorted(fits)}")
+    assert {topic for topic in topics if scene.real.events(topic)} == fits
+    forget(scene, *topics)
+
+
+def matches_two(peer: Peer) -> bool:
+    return bool(peer.ask("matched", topic="shared") == [2, 2])
+
+
+def test_each_message_comes_once_where_both_publish_and_subscribe(scene: Scene) -> None:
+    """Nothing comes back to whoever sent it by another way."""
+    both = (scene.real, scene.ours)
+    for peer in both:
+        peer.ask("publisher", topic="shared", type_name="std_msgs/msg/String")
+        peer.ask("subscription", topic="shared", type_name="std_msgs/msg/String")
+    for peer in both:
+        until(functools.partial(matches_two, peer), f"{peer.name} sees both ends of both")
+    scene.real.ask("stream", topic="shared", rate=100.0, count=10, first=1)
+    scene.ours.ask("stream", topic="shared", rate=100.0, count=10, first=101)
+    expected = [*range(1, 11), *range(101, 111)]
+    for peer in both:
+        peer.wait("shared", 20)
+    # What came twice would be here by now: a message that was sent later has come both ways.
+    for peer, number in zip(both, (200, 300), strict=True):
+        peer.ask("publish", topic="shared", first=number)
+    for peer in both:
+        peer.wait("shared", 1, number=200)
+        peer.wait("shared", 1, number=300)
+        assert sorted(each["number"] for each in peer.events("shared")) == [*expected, 200, 300]
+    forget(scene, "shared")
