@@ -31,6 +31,7 @@ ANNEXES = {
         "tests/cli/bridge",
         "tests/dds",
         "tests/rtps",
+        "tests/support/dds_others.py",
         "tests/support/fake_rtps.py",
         "tests/support/mirrored.py",
     ],

@@ -14,11 +14,15 @@ from typing import NamedTuple
 
 import pytest
 
+from robolink.dds import transport as dds_transport
+from robolink.dds.transport import DdsTransport
 from tests.dds.peers import Peer, environment
 from tests.judge.programs import TEST_MSGS
 from tests.judge.wheels import DISTRIBUTIONS, NoWheelsError, installed
 from tests.support.commands import ROBOLINK, Command
+from tests.support.dds_others import open_session
 from tests.support.domains import free_dds_domain
+from tests.support.fake_rtps import FakeNetwork
 
 PROGRAMS = Path(__file__).parent / "programs"
 
@@ -101,3 +105,21 @@ def scene(request: pytest.FixtureRequest, programs: Path) -> Iterator[Scene]:
             stack.enter_context(lab.bridge())
         ours = stack.enter_context(lab.direct() if way == "direct" else lab.beside())
         yield Scene(lab, distribution, way, theirs.ready(), ours.ready())
+
+
+@pytest.fixture
+def fake(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeNetwork]:
+    """A DDS network in memory."""
+    monkeypatch.setattr(dds_transport, "FIRST", 0.02)  # nobody takes long here
+    monkeypatch.setattr(dds_transport, "PATIENCE", 0.1)
+    network = FakeNetwork()
+    yield network
+    network.close()
+
+
+@pytest.fixture
+def ours(fake: FakeNetwork) -> Iterator[DdsTransport]:
+    """A session on it."""
+    session = open_session(fake)
+    yield session
+    session.close()
