@@ -15,6 +15,7 @@ from robolink.exceptions import SecurityError, TransportError
 from robolink.networks.kinds import Kind
 from robolink.networks.request import RANGE, checked_domain
 from robolink.rtps import Participant, Range, Reach
+from robolink.rtps.reach import LOOPBACK, SEARCHED, ports
 
 STATIC_PEERS = "ROS_STATIC_PEERS"
 """ROS 2's variable with the machines to look for, `HOST;HOST`."""
@@ -27,6 +28,7 @@ UNSECURED = "ROBOLINK_DDS_UNSECURED"
 
 _GROUP = "239.255.0.1"
 _ANY_PORT = 9
+_LAST_PORT = 0xFFFF
 _LOCAL = ("", "SYSTEM_DEFAULT", "LOCALHOST")
 
 
@@ -53,7 +55,24 @@ def open_session(
         announced = user_data.rstrip(b"\0") + mark + b"\0" if mark else user_data
         return Participant(number, reach=reach, user_data=announced, **options)  # type: ignore[arg-type]
 
-    return DdsTransport(join, domain, enclave or "/")
+    is_alone = reach.range is Range.OFF
+    return DdsTransport(join, domain, enclave or "/", (lambda: 1) if is_alone else lambda: count_here(domain))
+
+
+def count_here(domain: int) -> int:
+    """Return the number of participants that hold a port on this machine, of those that are looked for."""
+    return sum(map(_is_taken, (ports(domain, index)[0] for index in range(SEARCHED))))
+
+
+def _is_taken(port: int) -> bool:
+    if port > _LAST_PORT:
+        return False
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind((LOOPBACK, port))
+        except OSError:
+            return True
+    return False
 
 
 def refuse_security(environ: Mapping[str, str]) -> None:

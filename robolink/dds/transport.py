@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 FIRST = 0.3
 """Time within which others answer a new participant's announcement, in seconds; it takes a few milliseconds."""
 
+LATE = 1.2
+"""Age until which a new session waits for a participant that is on this machine and has not answered, in seconds."""
+
 PATIENCE = 0.5
 """Time without news after which participants that have not told all count as frozen, in seconds."""
 
@@ -61,13 +64,20 @@ class DdsTransport(Transport):
 
     threaded = True
 
-    def __init__(self, open_participant: Callable[..., Participant], domain: int = 0, enclave: str = "/") -> None:
+    def __init__(
+        self,
+        open_participant: Callable[..., Participant],
+        domain: int = 0,
+        enclave: str = "/",
+        count_here: Callable[[], int] = lambda: 0,
+    ) -> None:
         """Open a session.
 
         Args:
             open_participant: Function that opens a participant: it takes the domain, and what `Participant` takes.
             domain: ROS domain id, 0 to 232.
             enclave: Enclave that others are told; it gives no rights.
+            count_here: Function that counts the participants which hold ports on this machine, this one among them.
 
         Raises:
             TransportError: if the domain cannot be joined.
@@ -76,6 +86,7 @@ class DdsTransport(Transport):
         self._domain = domain
         self._begin = clocks.monotonic()
         self._why_closed = ""
+        self._count_here = count_here
         self._worker = Worker()
         self._tokens = Tokens(self._worker)
         self._hashes = Hashes(lambda name: self._worker.post(functools.partial(self._others.on_hash, name)))
@@ -166,11 +177,17 @@ class DdsTransport(Transport):
     def tokens(self, pattern: str) -> list[str]:
         """Return the tokens that match `pattern`, sorted.
 
-        A new session waits for FIRST, and until all has been read that the others have to tell.
+        A new session waits for FIRST, and until all has been read that the others have to tell. Where more participants
+        hold ports on this machine than it has met, it waits for LATE: on a busy one they take their time.
         """
         self._check()
         while not self._knows_all():
             time.sleep(0.005)
+        if clocks.monotonic() - self._begin < LATE and (here := self._count_here() - 1) > 0:
+            while len(self._participant.peers()) < here and clocks.monotonic() - self._begin < LATE:
+                time.sleep(0.005)
+            while not self._knows_all():
+                time.sleep(0.005)
         return self._tokens.matching(pattern)
 
     def _knows_all(self) -> bool:

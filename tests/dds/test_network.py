@@ -145,6 +145,16 @@ def test_a_launch_file_is_refused_in_one_line_before_anything_starts(
 # ---------------------------------------------------------------- sessions over sockets
 
 
+def test_participants_on_this_machine_are_counted_by_their_ports(dds_domain: int) -> None:
+    assert network.count_here(dds_domain) == 0
+    sessions = [network.open_session(dds_domain, {}) for _ in range(3)]
+    assert network.count_here(dds_domain) == 3
+    for session in sessions:
+        session.close()
+    until(lambda: network.count_here(dds_domain) == 0)
+    assert network.count_here(232) == 0  # where the ports end
+
+
 def test_it_is_chosen_by_argument_or_variable(dds_domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     by_argument = connect("zenoh://", dds_domain, network="dds")
     monkeypatch.setenv("ROBOLINK_NETWORK", "dds")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -240,6 +241,29 @@ def test_a_new_session_lists_all_that_is_there(fake: FakeNetwork) -> None:
     session = open_session(fake)
     assert kinds(session) == [f"{kind} node{number}" for kind in ("MP", "SS") for number in range(3)]
     session.close()
+
+
+def test_a_new_session_waits_for_who_is_on_this_machine_and_slow(
+    fake: FakeNetwork, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dds_transport, "LATE", 30.0)
+    opens: Any = fake.open
+    session = DdsTransport(opens, count_here=lambda: 2)
+    slow: list[Other] = []
+
+    def begin() -> None:
+        slow.append(Other(fake))
+        slow[0].tell("slow", slow[0].publisher())
+
+    timer = threading.Timer(0.2, begin)
+    timer.start()
+    assert kinds(session) == ["MP slow"]
+    timer.join()
+    monkeypatch.setattr(dds_transport, "LATE", 0.1)
+    impatient = DdsTransport(opens, count_here=lambda: 9)
+    assert kinds(impatient) == ["MP slow"]
+    for each in (session, impatient):
+        each.close()
 
 
 def test_a_frozen_participant_does_not_hold_up_a_listing_for_long(
