@@ -214,8 +214,8 @@ def test_wrong_usage_is_exit_code_2(options: list[str], said: str, capsys: Captu
 )
 @pytest.mark.usefixtures("served", "impatient")
 def test_who_waits_for_a_server_is_told_why_and_gives_up(words: list[str], reason: str, capsys: Captured) -> None:
-    assert main(["action", "send_goal", *words, "--timeout", "0.2"]) == 1
-    assert capsys.readouterr() == (WAITING, f"waiting: {reason}\nrobolink: gave up after 0.2 s: {reason}\n")
+    assert main(["action", "send_goal", *words, "--timeout", "0.5"]) == 1
+    assert capsys.readouterr() == (WAITING, f"waiting: {reason}\nrobolink: gave up after 0.5 s: {reason}\n")
 
 
 @pytest.mark.usefixtures("impatient")
@@ -224,9 +224,9 @@ def test_a_server_on_another_domain_is_told(node: Node, capsys: Captured) -> Non
     other.init([], domain_id=5)
     with other:
         ActionServer(made(other, "far"), Fibonacci, "/sums", print)
-        assert main(["action", "send_goal", "/sums", "--timeout", "0.1", "--json"]) == 1
+        assert main(["action", "send_goal", "/sums", "--timeout", "0.5", "--json"]) == 1
     reason = "nobody serves the action /sums on domain 7; it is on domain 5: set ROS_DOMAIN_ID=5"
-    assert capsys.readouterr() == ("", f"waiting: {reason}\nrobolink: gave up after 0.1 s: {reason}\n")
+    assert capsys.readouterr() == ("", f"waiting: {reason}\nrobolink: gave up after 0.5 s: {reason}\n")
 
 
 def test_a_server_that_never_answers(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
