@@ -13,6 +13,8 @@ import pytest
 from tests.dds.conftest import Lab
 from tests.dds.peers import Peer, until
 from tests.support.commands import Command
+from tests.support.ros2_peer import router
+from tests.support.sdk_peer import Sdk
 
 pytestmark = [pytest.mark.processes, pytest.mark.slow]
 
@@ -141,3 +143,24 @@ def test_it_ends_quickly_and_takes_all_along(pair: Pair, number: signal.Signals)
     assert bridge.errors == []
     until(lambda: "/lab/zenoh" not in pair.peer("dds").ask("nodes"), "DDS has been told", 1.0)
     until(lambda: "/lab/dds" not in pair.peer("zenoh").ask("nodes"), "Zenoh knows", 1.0)
+
+
+def test_a_peer_of_ros_2_on_zenoh_that_others_wrote_meets_dds(lab: Lab) -> None:
+    """zenoh-ros2-sdk speaks as rmw_zenoh does, behind a router as its nodes are."""
+    with (
+        router() as port,
+        Sdk(port, lab.domain) as sdk,
+        Command(lab.domain, "bridge", "dds", "--network", f"127.0.0.1:{port}") as bridge,
+        lab.direct("dds") as peer,
+    ):
+        bridge.wait_for("robolink bridge:")
+        peer.ready()
+        peer.ask("subscription", topic="/of_sdk", type_name=STRING, field="data")
+        peer.ask("publisher", topic="/of_dds", type_name=STRING)
+        sdk.ask("publisher", topic="/of_sdk", type_name=STRING, node="sdk_talker")
+        sdk.ask("subscribe", topic="/of_dds", type_name=STRING, node="sdk_listener")
+        sdk.ask("publish", topic="/of_sdk", values={"data": "hello"})
+        assert peer.wait("/of_sdk")[0]["value"] == "hello"
+        until(lambda: "/sdk_listener" in peer.ask("nodes"), "the graph")
+        peer.ask("publish", topic="/of_dds", first=7)
+        assert "7" in sdk.message("/of_dds")["data"]

@@ -14,6 +14,12 @@ from robolink.wire import fields_of, gid_in, is_attachment, numbers_in
 KNOWN_WITHIN = 2.0
 """Time in seconds for which samples of a publisher wait whose announcement has not come yet."""
 
+ADOPTED_AFTER = 0.3
+"""Time in seconds after which they are taken to be those of a known publisher that has sent nothing by its own gid."""
+
+LOOK_EVERY = 0.1
+"""Interval of the looks at the samples that wait, in seconds."""
+
 MOST_PARKED = 100
 """Most samples of one publisher that wait, for its announcement or for its outlet to be matched."""
 
@@ -29,6 +35,8 @@ class Forward:
         self._waiting: deque[tuple[bytes, bytes]] | None = deque(maxlen=MOST_PARKED) if waits else None
         self.put: Callable[[bytes, bytes], object] = self._hold if waits else outlet.put
         """Send a payload with its attachment, once the outlet is matched."""
+        self.gids: list[bytes] = []
+        """Gids of the samples that come this way."""
         self.last = b""
         """Attachment of the last sample that came this way."""
 
@@ -83,6 +91,7 @@ class Crossing:
         """Send the samples of the publisher with these gids on from now on, those that wait first."""
         for gid in gids:
             self._forwards[gid] = forward
+            forward.gids.append(gid)
             _, waiting = self._parked.pop(gid, (0.0, ()))
             for payload, attachment in waiting:
                 self._bytes_parked -= len(payload)
@@ -92,8 +101,11 @@ class Crossing:
 
     def dismiss(self, gids: Iterable[bytes]) -> None:
         """Forget a publisher."""
-        for gid in gids:
-            self._forwards.pop(gid, None)
+        found = [forward for gid in gids if (forward := self._forwards.get(gid)) is not None]
+        for forward in found:
+            for gid in forward.gids:
+                if self._forwards.get(gid) is forward:
+                    del self._forwards[gid]
 
     def sift(self, more: int) -> None:
         """Drop what comes twice, by its number, from now on (1), or no longer (-1); as often as it was begun."""
@@ -112,19 +124,29 @@ class Crossing:
         if self._bytes_parked + len(payload) > MOST_BYTES_PARKED:
             return
         if not self._parked:
-            self._later.call(self._expire_later)
+            self._later.call(self._look_later)
         _, waiting = self._parked.setdefault(gid, (self._later.now(), deque()))
         if len(waiting) < MOST_PARKED:
             waiting.append((payload, attachment))
             self._bytes_parked += len(payload)
 
-    def _expire_later(self) -> None:
-        lane = self._source.lane
-        self._later.call_after(KNOWN_WITHIN, functools.partial(lane.post, self._expire))
+    def _look_later(self) -> None:
+        self._later.call_after(LOOK_EVERY, functools.partial(self._source.lane.post, self._look))
 
-    def _expire(self) -> None:
-        before = self._later.now() - KNOWN_WITHIN
-        for gid in [gid for gid, (since, _) in self._parked.items() if since <= before]:
-            self._bytes_parked -= sum(len(payload) for payload, _ in self._parked.pop(gid)[1])
+    def _look(self) -> None:
+        """Find a publisher for the samples that wait, and drop those that have waited long enough.
+
+        rmw_zenoh's gid is a hash of the token; others on Zenoh choose one at random (zenoh-ros2-sdk 0.1.8).
+        """
+        now = self._later.now()
+        for gid, (since, waiting) in [*self._parked.items()]:
+            if now - since < ADOPTED_AFTER:
+                continue
+            forward = next((each for each in self._forwards.values() if not each.last), None)
+            if forward is not None:
+                self.admit([gid], forward)
+            elif now - since >= KNOWN_WITHIN:
+                del self._parked[gid]
+                self._bytes_parked -= sum(len(payload) for payload, _ in waiting)
         if self._parked:
-            self._later.call(self._expire_later)
+            self._later.call(self._look_later)

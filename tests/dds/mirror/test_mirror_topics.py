@@ -11,7 +11,8 @@ from robolink.dds.mirror.crossing import KNOWN_WITHIN
 from robolink.dds.mirror.mirror import LINGER
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.qos import DurabilityPolicy, QoSProfile
-from tests.support.mirrored import Half, Mirrored, heard, send
+from robolink.wire import DataKey, format_key, format_token, pack_attachment
+from tests.support.mirrored import Half, Mirrored, crossings, heard, packed, raw_tokens, send
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -212,3 +213,30 @@ def test_who_stays_misses_and_repeats_nothing(pair: tuple[Mirrored, Half, Half],
             others.pop(0).destroy_node()
     scene.run(0.5)
     assert stays == list(range(60))
+
+
+def test_a_publisher_whose_gid_is_not_that_of_its_token(joined: Mirrored) -> None:
+    """What zenoh-ros2-sdk has: its samples are its own, since no other publisher of the topic is without any."""
+    got = heard(joined.b.node("listener"))
+    usual = joined.a.node("talker").create_publisher(Int32, "chatter", 10)
+    session = joined.a.session()
+    token = raw_tokens(session.session_id)[0]
+    outlet = session.advertise(format_key(DataKey(0, token.name, token.type_name, token.type_hash)), token.qos)
+    announced = session.announce(format_token(token))
+    joined.until(lambda: usual.get_subscription_count() == 1 and outlet.matched)
+    joined.run(0.1)
+    send(usual, 1)
+    joined.run(0.1)
+    outlet.put(packed(7), pack_attachment(1, 0, b"chosen at random"))
+    joined.until(lambda: got == [1, 7], 1.0)
+    outlet.put(packed(8), pack_attachment(2, 0, b"chosen at random"))
+    outlet.put(packed(9), pack_attachment(1, 0, b"somebody else's."))
+    send(usual, 2)
+    joined.run(KNOWN_WITHIN + 0.5)
+    assert got == [1, 7, 8, 2]
+    announced.close()
+    joined.run(0.5)
+    outlet.put(packed(10), pack_attachment(3, 0, b"chosen at random"))
+    joined.run(KNOWN_WITHIN + 0.5)
+    assert got == [1, 7, 8, 2]
+    assert all(not each._parked and len(each._forwards) <= 1 for each in crossings(joined))
