@@ -95,9 +95,10 @@ def test_nobody_waits_for_a_large_sample_to_leave_but_its_own_writer(
     pair: tuple[Participant, Participant], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     a, b = pair
+    got_large: list[bytes] = []
     got: list[bytes] = []
-    for topic in ("rt/large", "rt/small"):
-        b.reader(topic, TYPE, ALL, lambda payload, _: got.append(payload))
+    b.reader("rt/large", TYPE, ALL, lambda payload, _: got_large.append(payload))
+    b.reader("rt/small", TYPE, ALL, lambda payload, _: got.append(payload))
     large, small = a.writer("rt/large", TYPE, ALL), a.writer("rt/small", TYPE, ALL)
     wait_until(lambda: large.matched() and small.matched())
     send, is_paused, goes_on = a._sockets.send, threading.Event(), threading.Event()
@@ -115,10 +116,10 @@ def test_nobody_waits_for_a_large_sample_to_leave_but_its_own_writer(
     small.put(sample(1))
     assert a.endpoints()
     wait_until(lambda: got)
-    assert numbers(got) == [1]
+    assert thread.is_alive()
     goes_on.set()
     thread.join()
-    wait_until(lambda: len(got) == 2)
+    wait_until(lambda: got_large)
 
 
 def test_samples_of_two_threads_leave_in_the_order_of_their_numbers(pair: tuple[Participant, Participant]) -> None:
