@@ -18,7 +18,7 @@ from tests.support.sdk_peer import Sdk
 
 pytestmark = [pytest.mark.processes, pytest.mark.slow]
 
-STRING = "std_msgs/msg/String"
+STRING, ADD = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts"
 WITHIN = 3.0
 """Longest time in s until messages go both ways after the last part is there; some 0.3 s on a quiet machine."""
 
@@ -164,3 +164,8 @@ def test_a_peer_of_ros_2_on_zenoh_that_others_wrote_meets_dds(lab: Lab) -> None:
         until(lambda: "/sdk_listener" in peer.ask("nodes"), "the graph")
         peer.ask("publish", topic="/of_dds", first=7)
         assert "7" in sdk.message("/of_dds")["data"]
+        sdk.ask("serve", service="/of_sdk/add", node="sdk_server")
+        peer.ask("client", name="/of_sdk/add", type_name=ADD)
+        until(lambda: peer.ask("is_ready", name="/of_sdk/add"), "the SDK's service")
+        answer = peer.ask("call", name="/of_sdk/add", type_name=ADD, values={"a": 40, "b": 2})
+        assert answer == {"sum": 42}

@@ -225,3 +225,17 @@ def test_a_bridge_among_the_participants_has_a_token_as_on_zenoh(scene: Scene) -
     until(lambda: scene.there.tokens(bridge_pattern(0)) == [token])
     bridge.close()
     until(lambda: not scene.there.tokens(bridge_pattern(0)))
+
+
+def test_a_caller_without_a_token_is_answered(ends: tuple[Transport, Transport]) -> None:
+    serving, calling = ends
+    desk = Node(serving, "server").serves()
+    until(lambda: sees(calling, "server", 1))
+    key = format_key(DataKey(0, "/set", *TYPES[EndpointKind.SERVICE]))
+    for number in range(2):
+        asked = Caller(calling, b"request", key, pack_attachment(number, 5, b"chosen at random"))
+        query = desk.next()
+        query.reply(b"answer", query.attachment)
+        query.close()
+        (reply,) = asked.replies()
+        assert reply.payload == b"answer"
