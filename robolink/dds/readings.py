@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from robolink.rtps import Reader
 
 _AS_REQUESTED, _RELIABLY, _AS_IT_COMES, _NOT_AT_ALL = "as requested", "reliably", "as it comes", "not at all"
+_WITH_RETAINED = "with what it retains"
 """Ways by which a writer is read."""
 
 _MOST_HELD = 100
@@ -34,6 +35,9 @@ class Reading:
 
     DDS lets a reader and a writer that offers less never meet; over Zenoh they would, and the weaker policy hold. So
     such writers are read too, by a reader that requests no more than they offer, and a warning says what ROS 2 does.
+
+    A subscription that is BEST_EFFORT and TRANSIENT_LOCAL, such as that of `bag record`, reads writers that offer both
+    reliably: Fast DDS sends what it retains to RELIABLE readers only.
     """
 
     def __init__(self, topics: Topics, stream: Stream, qos: QoSProfile, gate: Sink | None = None) -> None:
@@ -45,8 +49,8 @@ class Reading:
         self._lock = fork_lock()
         self._requested, self._depth = announced(qos), latched_depth(qos)
         self._held: dict[bytes, Latch[tuple[bytes, bytes]]] = {}
-        self._lenient: dict[str, Reader] = {}
-        """Readers of the writers that offer less, by the way in which they are read."""
+        self._others: dict[str, Reader] = {}
+        """Readers of the writers that are read in another way than as requested, by that way."""
         self._sources: dict[bytes, str] = {}
         """Way by which each writer is read, by its GUID, as far as it has sent anything."""
         self._reader = self._make(self._requested, _AS_REQUESTED)
@@ -69,11 +73,13 @@ class Reading:
         return found
 
     def _way(self, writer: Endpoint) -> str:
-        """Return the way by which a writer is read: as requested, by a lenient reader of its reliability, or not."""
+        """Return the way by which a writer is read: as requested, by another reader, or not."""
         if not self._has_hash(writer):
             return _NOT_AT_ALL
-        if not shortcomings(self._requested, writer.qos):
-            return _AS_REQUESTED
+        requested = self._requested
+        if not shortcomings(requested, writer.qos):
+            is_stronger = requested.transient_local and writer.qos.reliable and not requested.reliable
+            return _WITH_RETAINED if is_stronger else _AS_REQUESTED
         return _RELIABLY if writer.qos.reliable else _AS_IT_COMES
 
     def _has_hash(self, writer: Endpoint) -> bool:
@@ -93,16 +99,21 @@ class Reading:
 
     @property
     def _readers(self) -> list[Reader]:
-        return [self._reader, *self._lenient.values()]
+        return [self._reader, *self._others.values()]
 
     def meet(self, writer: Endpoint) -> None:
-        """Read a writer that offers less than is requested by a reader of its own; for others there is one."""
+        """Make the reader of a writer's way, if it is the first one of that way."""
         way = self._way(writer)
-        if way in (_AS_REQUESTED, _NOT_AT_ALL) or way in self._lenient:
+        if way in (_AS_REQUESTED, _NOT_AT_ALL) or way in self._others:
             return
-        self._lenient[way] = self._make(Qos(reliable=writer.qos.reliable, depth=self._requested.depth), way)
+        retains = way is _WITH_RETAINED
+        qos = Qos(reliable=writer.qos.reliable, transient_local=retains, depth=self._requested.depth)
+        self._others[way] = self._make(qos, way)
         self.on_guids()
-        lacking = shortcomings(self._requested, writer.qos)
+        if not retains:
+            self._warn(shortcomings(self._requested, writer.qos))
+
+    def _warn(self, lacking: list[str]) -> None:
         warning = (
             f"{self.stream.name}: a publisher offers less {' and '.join(lacking)} than a subscription here requests:"
             " it is heard in robolink, but a subscription of ROS 2 would get nothing from it over DDS"
@@ -149,7 +160,7 @@ class Reading:
         """Replace the readers: what writers keep for late joiners comes once to each reader."""
         self._gate = None
         before = self._readers
-        self._lenient = {}
+        self._others = {}
         self._reader = self._make(self._requested, _AS_REQUESTED)
         for reader in before:
             reader.close()

@@ -364,6 +364,25 @@ def test_a_writer_that_offers_less_is_read_with_a_warning(
     assert "a subscription of ROS 2 would get nothing from it over DDS" in warning
 
 
+def test_a_best_effort_subscription_gets_what_a_reliable_writer_retains(
+    fake: FakeNetwork, ours: DdsTransport, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other, lazily = Other(fake), latched(5, ReliabilityPolicy.BEST_EFFORT)
+    strong, weak = other.publisher(LATCHED), other.publisher(LATCHED._replace(reliable=False))
+    strong.put(b"before")
+    ear = Ear(ours, TALK, lazily)
+    assert ear.next() == b"before"
+    until(lambda: (len(strong.matched()), len(weak.matched())) == (2, 1))
+    reliable = [each.qos.reliable for each in other.participant.endpoints() if each.guid in strong.matched()]
+    assert sorted(reliable) == [False, True]  # Fast DDS sends what it retains to the RELIABLE one only
+    for publisher in (strong, weak):
+        publisher.put(b"once")
+    assert ear.take(2) == [b"once"] * 2
+    assert ear.arrived.empty()
+    ours._worker.catch_up(10.0)
+    assert "/talk" not in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("subscription_first", [True, False])
 def test_a_real_subscription_that_requests_more_is_warned_of_once(
     fake: FakeNetwork, ours: DdsTransport, capsys: pytest.CaptureFixture[str], subscription_first: bool

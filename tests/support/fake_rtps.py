@@ -217,7 +217,7 @@ class FakeWriter:
             return
         if other.guid not in self.readers and not shortcomings(other.qos, mine.qos) and self.accepts(other):
             self.readers[other.guid] = other
-            if other.qos.transient_local:
+            if other.qos.transient_local and other.qos.reliable:  # as Fast DDS 3.2 does
                 for payload, info in [*self.history]:
                     self.participant.network.post(functools.partial(self._deliver, other.guid, payload, info))
             self.participant.network.post(lambda: self.on_match(other, True))

@@ -24,8 +24,8 @@ KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def latched(depth: int) -> QoSProfile:
-    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+def latched(depth: int, reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE) -> QoSProfile:
+    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=reliability)
 
 
 def stamped(number: int, publisher: int = 0, at: int | None = None) -> bytes:
