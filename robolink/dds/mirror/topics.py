@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from robolink.dds.mirror.crossing import Crossing, Forward
 from robolink.dds.mirror.sides import Announced, Later, Side, gids_of
-from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from robolink.transport.base import Handle, Outlet
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken
 
@@ -39,7 +39,8 @@ class _Inlet(NamedTuple):
     handle: Handle
     feeder: bytes
     """Gid of the subscription on the other side that it stands for; b"" if none has this key."""
-    latched: bool
+    rank: int
+    """That of the subscription's profile."""
 
 
 class _Flowing(NamedTuple):
@@ -76,8 +77,8 @@ class TopicFlow:
         self._subscriptions: dict[bytes, _Subscription] = {}
         self._of_hash: dict[str, int] = {}
         """Number of subscriptions by their type's hash."""
-        self._of_key: dict[str, tuple[dict[bytes, None], dict[bytes, None]]] = {}
-        """Subscriptions by their key on the source side: the volatile ones, and the latched ones."""
+        self._of_key: dict[str, tuple[dict[bytes, None], ...]] = {}
+        """Subscriptions by their key on the source side, and by the ranks of their profiles."""
         self._users: dict[str, int] = {}
         """Number of publishers whose samples flow, by their key on the source side."""
         self._inlets: dict[str, _Inlet] = {}
@@ -170,7 +171,7 @@ class TopicFlow:
     def _add_subscription(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:
         """Let flow what it wants, then announce it on the source side: who sees it there may publish at once."""
         key = self._source.key(token._replace(type_hash=type_hash))
-        self._of_key.setdefault(key, ({}, {}))[is_latched(token.qos)][gid] = None
+        self._of_key.setdefault(key, ({}, {}, {}, {}))[_rank(token.qos)][gid] = None
         self._subscriptions[gid] = _Subscription(token, _NOT_YET, key)
         self._of_hash[token.type_hash] = self._of_hash.get(token.type_hash, 0) + 1
         if self._of_hash[token.type_hash] == 1:
@@ -183,7 +184,7 @@ class TopicFlow:
     def _remove_subscription(self, gid: bytes) -> None:
         """End its announcement, and the flows that nobody else wants."""
         token, announced, key = self._subscriptions.pop(gid)
-        del self._of_key[key][is_latched(token.qos)][gid]
+        del self._of_key[key][_rank(token.qos)][gid]
         if not any(self._of_key[key]):
             del self._of_key[key]
         self._of_hash[token.type_hash] -= 1
@@ -219,30 +220,30 @@ class TopicFlow:
                 self._sift_if_several()
             return
         gid, qos = feeder
-        latched = is_latched(qos)
-        if now is not None and (now.latched, bool(now.feeder)) == (latched, bool(gid)) and self._is_there(now, key):
+        rank = _rank(qos)
+        if now is not None and (now.rank, bool(now.feeder)) == (rank, bool(gid)) and self._is_there(now, key):
             return
         if now is not None:  # the next one may bring the same, and a latched one what there was before
             self._sift(1)
             self._later.call_after(SIFTED_FOR, functools.partial(self._sift, -1))
         self._sift_if_several(key)
         handle = self._source.transport.subscribe(key, qos, self._source.lane.sink(self.crossing))
-        self._inlets[key] = _Inlet(handle, gid, latched)
+        self._inlets[key] = _Inlet(handle, gid, rank)
         if now is not None:
             now.handle.close()
 
     def _feeder(self, key: str) -> tuple[bytes, QoSProfile] | None:
-        """Return the subscription for which to subscribe under a key; a latched one hears what all others do."""
-        volatile, latched = self._of_key.get(key, ({}, {}))
-        for gid in (*latched, *volatile):
-            return gid, self._subscriptions[gid].token.qos
+        """Return the subscription for which to subscribe under a key: the one that hears what all others do."""
+        for gids in reversed(self._of_key.get(key, ())):
+            for gid in gids:
+                return gid, self._subscriptions[gid].token.qos
         if key not in self._users:
             return None
         # Publishers whose key is not that of the subscriptions, since one of the two has no hash.
         return b"", next(iter(self._subscriptions.values())).token.qos if self._subscriptions else QoSProfile(depth=10)
 
     def _is_there(self, inlet: _Inlet, key: str) -> bool:
-        return not inlet.feeder or inlet.feeder in self._of_key[key][inlet.latched]
+        return not inlet.feeder or inlet.feeder in self._of_key[key][inlet.rank]
 
     def _sift_if_several(self, *more: str) -> None:
         """Drop what comes twice while there are inlets of several keys: some publishers send to two."""
@@ -282,6 +283,11 @@ class TopicFlow:
 def is_latched(qos: QoSProfile) -> bool:
     """True if an end of this profile has to do with samples that are retained for late joiners."""
     return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def _rank(qos: QoSProfile) -> int:
+    """Return how much a subscription of this profile hears, from 0 to 3: a latched or RELIABLE one hears more."""
+    return 2 * is_latched(qos) + (qos.reliability is not ReliabilityPolicy.BEST_EFFORT)
 
 
 def _has_none(token: Any) -> bool:

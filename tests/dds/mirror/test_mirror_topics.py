@@ -10,7 +10,8 @@ from robolink import Node
 from robolink.dds.mirror.crossing import KNOWN_WITHIN
 from robolink.dds.mirror.mirror import LINGER
 from robolink.interfaces.std_msgs.msg import Int32
-from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from robolink.transport.base import Handle
 from robolink.wire import DataKey, format_key, format_token, pack_attachment
 from tests.support.mirrored import Half, Mirrored, crossings, heard, packed, raw_tokens, send
 
@@ -192,6 +193,34 @@ def test_a_latched_subscription_beside_a_volatile_one_gets_what_was_before(joine
     assert latched == [1, 2]
     assert volatile[-1] == 2
     assert len(volatile) == len(set(volatile))
+
+
+@pytest.mark.parametrize("order", [[False, True], [True, False]])
+def test_a_reliable_subscription_is_not_fed_by_that_of_a_best_effort_one(
+    joined: Mirrored, monkeypatch: pytest.MonkeyPatch, order: list[bool]
+) -> None:
+    source, feeding = joined.transports[0], []
+    subscribe = source.subscribe
+
+    def spy(key: str, qos: QoSProfile, sink: Any) -> Handle:
+        if "/chatter/" in key:
+            feeding.append(qos.reliability)
+        return subscribe(key, qos, sink)
+
+    monkeypatch.setattr(source, "subscribe", spy)
+    nodes = {is_reliable: joined.b.node("reliable" if is_reliable else "hasty") for is_reliable in order}
+    publisher = joined.a.node("talker").create_publisher(Int32, "chatter", 10)
+    got = {}
+    for is_reliable in order:
+        policy = ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT
+        got[is_reliable] = heard(nodes[is_reliable], qos=QoSProfile(depth=10, reliability=policy))
+        joined.run(0.1)
+    assert feeding.pop() is ReliabilityPolicy.RELIABLE
+    nodes[True].destroy_node()
+    joined.run(2.0)
+    assert feeding.pop() is ReliabilityPolicy.BEST_EFFORT
+    send(publisher, 1)
+    joined.until(lambda: got[False] == [1])
 
 
 @pytest.mark.parametrize("qos", [10, QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)])
