@@ -100,7 +100,7 @@ class DdsTransport(Transport):
             )
         except OSError as error:
             self._worker.close()
-            raise TransportError(f"cannot join DDS domain {domain}: {error}") from None
+            raise TransportError(f"cannot join DDS domain {domain}: {error.strerror or error}") from None
         self.session_id = participant.guid[:12].hex()
         self._topics.participant = self._services.participant = participant
         writer = participant.writer(entities.TOPIC, entities.TYPE, _DISCOVERY_QOS)

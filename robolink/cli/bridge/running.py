@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from robolink.cli.shared.output import say
 from robolink.exceptions import TransportError
-from robolink.networks.request import RANGE, checked_domain, domain_id, requested
+from robolink.networks.request import RANGE, ask, checked_domain, domain_id, requested
 from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
@@ -36,11 +36,13 @@ def run(domain: int | None, network: str | None, interface: str) -> None:
 
     environ = dict(os.environ)
     number = domain_id(environ) if domain is None else checked_domain(domain, "--domain")
-    name = checked_network(network, environ)
+    if network is not None:
+        ask(environ, network, "--network")
+    name = checked_network(environ)
     sys.setswitchinterval(0.0005)  # the lanes take turns with the participant's thread, and each message waits for it
     try:
         signal.signal(signal.SIGTERM, _end)
-        bridge = Bridge(number, network, environ, dds_environ(environ, interface))
+        bridge = Bridge(number, None, environ, dds_environ(environ, interface))
         try:
             for line in opening(number, name, interface, environ):
                 say(line)
@@ -56,12 +58,12 @@ def _end(number: int, frame: FrameType | None) -> None:
     raise KeyboardInterrupt
 
 
-def checked_network(network: str | None, environ: Mapping[str, str]) -> str:
+def checked_network(environ: Mapping[str, str]) -> str:
     """Return the requested Zenoh network; raises TransportError if it is DDS, which is on the other side."""
-    origin, value = requested(network, environ)
+    origin, value = requested(None, environ)
     if value == "dds":
         raise TransportError(
-            f"{origin or '--network'}: 'dds' is the other side of the bridge: name the Zenoh network, such as localhost"
+            f"{origin}: 'dds' is the other side of the bridge: name the Zenoh network, such as localhost"
         )
     return value
 

@@ -35,17 +35,19 @@ def test_dds_leaves_the_machine_only_where_an_interface_is_named(
 
 
 def test_the_zenoh_side_is_as_for_nodes_but_never_dds() -> None:
-    assert checked_network(None, {}) == "localhost"
-    assert checked_network("lan", {"ROBOLINK_NETWORK": "robot.local"}) == "lan"
-    assert checked_network(None, {"ROBOLINK_NETWORK": "robot.local"}) == "robot.local"
+    assert checked_network({}) == "localhost"
+    assert checked_network({"ROBOLINK_NETWORK": "robot.local"}) == "robot.local"
     with pytest.raises(TransportError, match="ROBOLINK_NETWORK: 'dds' is the other side of the bridge"):
-        checked_network(None, {"ROBOLINK_NETWORK": "dds"})
+        checked_network({"ROBOLINK_NETWORK": "dds"})
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--network", "dds"], "'dds' is the other side of the bridge: name the Zenoh network, such as localhost\n"),
+        (
+            ["--network", "dds"],
+            "--network: 'dds' is the other side of the bridge: name the Zenoh network, such as localhost\n",
+        ),
         (["--domain", "300"], "--domain must be a number from 0 to 232, got 300\n"),
     ],
 )
