@@ -368,7 +368,7 @@ def test_a_best_effort_subscription_gets_what_a_reliable_writer_retains(
     fake: FakeNetwork, ours: DdsTransport, capsys: pytest.CaptureFixture[str]
 ) -> None:
     other, lazily = Other(fake), latched(5, ReliabilityPolicy.BEST_EFFORT)
-    strong, weak = other.publisher(LATCHED), other.publisher(LATCHED._replace(reliable=False))
+    strong, weak = [other.publisher(Qos(each, transient_local=True, depth=1)) for each in (True, False)]
     strong.put(b"before")
     ear = Ear(ours, TALK, lazily)
     assert ear.next() == b"before"
