@@ -6,6 +6,7 @@ EXCUSED = {
     "security create_keystore": "shows nothing, or the path that it was given, as the others do",
     "security generate_policy": "writes a file, and shows a text of robolink's own",
     "bag list": "shows texts of robolink's own",
+    "bridge dds": "counts, and names a bridge's host in letters of keys: robolink/wire/bridges.py",
     "top": "names nodes, topics and types, which are plain",
     "view": "prints an address of its own",
     "bag record": "names topics, which are plain, and its own counts",

@@ -28,6 +28,8 @@ from tests.support.humble_peer import DATA, LATCHED, Peer, spinning
 from tests.support.spins import done, spin_until
 from tests.support.transports import PATIENCE
 
+pytestmark = pytest.mark.unlike_dds("Humble's keys are of rmw_zenoh: DDS has one topic for all")
+
 
 def test_the_real_token_and_attachment_name_the_same_publisher(bus: Bus, context: Context) -> None:
     token = (DATA / "liveliness-token-real-humble.txt").read_text().strip()

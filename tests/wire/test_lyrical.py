@@ -29,6 +29,8 @@ from tests.support.seen_by_commands import a_node_that_commands_see, latch, pres
 from tests.support.spins import spin_for, spin_until
 from tests.support.transports import Network
 
+pytestmark = pytest.mark.unlike_dds("the second key is of rmw_zenoh: DDS has one topic for all")
+
 
 class LyricalTransitionEvent(Message, type_name="lifecycle_msgs/msg/TransitionEvent"):
     """Lyrical's: what was `uint64 timestamp` in Kilted and before is a Time."""
