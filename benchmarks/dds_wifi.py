@@ -1,7 +1,7 @@
 """A robot and a laptop across Wi-Fi: the same rclpy programs over DDS, over Zenoh, and with both, by turns.
 
     python benchmarks/dds_wifi.py REAL                              # all contenders at 1 % and 3 % loss: half an hour
-    python benchmarks/dds_wifi.py REAL --loss 1 --with real,bridge --only twist,scan --rounds 1
+    python benchmarks/dds_wifi.py REAL --loss 1 --with real,bridge --only twist,scan --rounds 3
 
 REAL is a Python with rclpy and Fast DDS, as in benchmarks/beside_rclpy.py, also with ros-sensor-msgs and ros-std-srvs.
 The network is tests/support/wireless.py: two network namespaces, 3 ms +- 2 ms, 30 Mbit/s each way, frames lost
@@ -257,7 +257,7 @@ def options_of(words: Sequence[str]) -> argparse.Namespace:
     parser.add_argument(
         "--only", type=split, default=[], help=f"starts of rows, with commas between: {', '.join(rows)}"
     )
-    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=5.0, help="of each stream")
     parser.add_argument("--starts", type=int, default=3, help="of the laptop's program in a round, for `found`")
     parser.add_argument("--calls", type=int, default=50)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
 from robolink.rtps import Qos
@@ -81,3 +83,26 @@ def test_what_never_comes_is_asked_for_a_few_times_only() -> None:
     a.core.expect(network.now, reader)
     network.run(60)
     assert len([nack for nack in network.submessages(AckNack) if not nack.final]) == 6
+
+
+@pytest.mark.parametrize("loss", [0.01, 0.03])
+def test_large_samples_cross_a_link_that_loses_frames_without_a_storm_of_repairs(loss: float) -> None:
+    network = Network(host="10.0.0.1")
+    a, b = network.join(), network.join()
+    writer, (reader, got) = a.writer(qos=Qos()), b.reader(qos=Qos())
+    assert network.run(5, until=lambda: bool(writer.readers) and bool(reader.writers))
+    network.sent.clear()
+    dice = random.Random(1)
+
+    def is_lost(raw: bytes, _: object) -> bool:
+        frames = -(-len(raw) // 1480)
+        return any(dice.random() < loss for _ in range(frames))
+
+    network.faults = Faults(delay=0.005, is_lost=is_lost)
+    for number in range(20):
+        a.put(writer, sample(number, 300_000))
+        network.run(0.1)
+    network.run(2, until=lambda: len(got) == 20)
+    assert numbers(got) == list(range(20))
+    least = 20 * 300_000 * (1 + 0.1)  # with headers
+    assert sum(len(raw) for _, raw, _ in network.sent) < least * (1 + 2 * loss)
