@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import statistics
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -70,6 +72,21 @@ def test_the_environment_says_how_far_it_reaches(
 def test_the_way_to_this_machine_needs_no_interface() -> None:
     assert network._way_to("127.0.0.1") == ""
     assert network._way_to("no such host") == ""
+
+
+@pytest.mark.parametrize(
+    ("up", "expected"), [(["lo", "eth0"], "10.0.0.7"), (["lo", "eth0", "wlan0"], ""), (["lo", "wlan0"], "10.1.0.7")]
+)
+def test_without_a_route_for_multicast_the_only_interface_is_used(
+    up: list[str], expected: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A robot at the end of a cable has none. With several interfaces one must be named."""
+    addresses = {"lo": "127.0.0.1", "eth0": "10.0.0.7", "wlan0": "10.1.0.7"}
+    found = {name: [SimpleNamespace(family=socket.AF_INET, address=each)] for name, each in addresses.items()}
+    monkeypatch.setattr("psutil.net_if_addrs", lambda: found)
+    monkeypatch.setattr("psutil.net_if_stats", lambda: {name: SimpleNamespace(isup=name in up) for name in addresses})
+    monkeypatch.setattr(network, "_way_to", lambda address: "")
+    assert reach_of({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}) == Reach(expected, range=Range.SUBNET)
 
 
 def test_wrong_settings_are_said_in_one_line() -> None:
