@@ -236,4 +236,8 @@ def _explain(error: Exception) -> int:
     context = getattr(error, "ctx", None)
     hint = f" (see '{context.command_path} --help')" if context is not None else ""
     text = str(getattr(error, "format_message", lambda: error)())
+    if context is not None and getattr(error, "option_name", "") == "--network":
+        hint = (
+            f" (for all commands it comes first: robolink --network NET {context.command_path.partition(' ')[2]} ...)"
+        )
     return complain(text.rstrip(".") + hint, 2)

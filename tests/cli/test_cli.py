@@ -67,6 +67,10 @@ def test_help_imports_nothing_heavy() -> None:
         (["run"], "which node? --list shows them (see 'robolink run --help')"),
         (["launch"], "launch what? --list shows what there is (see 'robolink launch --help')"),
         (["run", "world", "--nam", "x"], "No such option: --nam"),
+        (
+            ["topic", "list", "--network", "lan"],
+            "No such option: --network (for all commands it comes first: robolink --network NET topic list ...)",
+        ),
         (["run", "world", "--name"], "Option '--name' requires an argument"),
         (["launch", "x", "--duration", "long"], "Invalid value for '--duration': 'long' is not a valid float"),
         (["launch", "x", "--duration", "-1"], "Invalid value for '--duration': expected 0 to 1e+09 seconds, got -1"),
