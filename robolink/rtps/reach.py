@@ -206,7 +206,8 @@ def _resolve(peer: str) -> str:
     try:
         found = socket.getaddrinfo(peer, None, socket.AF_INET, socket.SOCK_DGRAM)
     except (OSError, UnicodeError) as error:
-        raise ReachError(errno.EADDRNOTAVAIL, f"static peer {peer!r} has no IPv4 address: {error}") from None
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ReachError(errno.EADDRNOTAVAIL, f"static peer {peer!r} has no IPv4 address: {reason}") from None
     return str(found[0][4][0])
 
 

@@ -187,7 +187,7 @@ class Sockets:
                 for address in addresses:
                     made.append(_Pair.bound(address, ports(self._domain, index)))
             except (OSError, OverflowError) as found:  # OverflowError: beyond 65535, in the last domains
-                error = str(found)
+                error = str((isinstance(found, OSError) and found.strerror) or found)
                 for pair in made:
                     pair.close()
             else:
@@ -195,7 +195,7 @@ class Sockets:
         raise ReachError(
             errno.EADDRINUSE,
             f"no free ports for a participant of domain {self._domain} at {' and '.join(addresses)}"
-            f" ({_INDICES} were tried; the last error: {error})",
+            f" ({_INDICES} were tried; the last error: {error}): end some of them, or use another domain",
         )
 
     def _join(self) -> socket.socket | None:
