@@ -1,4 +1,4 @@
-"""What DDS costs: round trips, rates and the bridge's processor time, beside two nodes of a real ROS 2, by turns.
+"""Costs of DDS: round trips, rates and the bridge's processor time, beside two nodes of a real ROS 2, by turns.
 
 Usage: python benchmarks/dds.py REAL [--rounds N] [--only round-trips|rates|idle]
 
@@ -231,7 +231,7 @@ class Bench:
 
 
 def processor_time(pid: int) -> float:
-    """Return what a process has used so far, in s."""
+    """Return the processor time of a process so far, in seconds."""
     fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 

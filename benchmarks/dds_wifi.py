@@ -60,7 +60,7 @@ class Stream(NamedTuple):
 
     @property
     def words(self) -> dict[str, Any]:
-        """What its two ends are told."""
+        """Options of its two ends."""
         return {"kind": self.kind, "topic": f"/{self.kind}_{self.reliable}", "reliable": self.reliable}
 
 
@@ -79,7 +79,7 @@ STREAMS = {
 
 
 class Contender(NamedTuple):
-    """What runs on the robot and on the laptop; a bridge is beside the program."""
+    """Programs on the robot and on the laptop; a bridge is beside the program."""
 
     name: str
     robot: dict[str, str]
@@ -247,7 +247,7 @@ def _spread(seconds: Sequence[float]) -> str:
 
 
 def options_of(words: Sequence[str]) -> argparse.Namespace:
-    """Return what was requested."""
+    """Return the requested options."""
     rows = ("found", "call", *STREAMS)
     split: Callable[[str], list[str]] = lambda text: text.split(",")  # noqa: E731
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

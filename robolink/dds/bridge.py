@@ -73,23 +73,23 @@ class Bridge:
         self._state = STARTING
         self._seen: set[str] = set()
         try:
-            self.zenoh = zenoh = self._kept(open_zenoh(domain, network, environ))
+            self.zenoh = zenoh = self._closing(open_zenoh(domain, network, environ))
             mark = mark_data(Mark(zenoh.session_id, self._host))
-            self.dds = self._kept(open_session(domain, dds_environ, mark=mark))
+            self.dds = self._closing(open_session(domain, dds_environ, mark=mark))
             state = zenoh.announce(self._token(STARTING))
-            self._kept(zenoh.watch(bridge_pattern(domain), self._on_token))
+            self._closing(zenoh.watch(bridge_pattern(domain), self._on_token))
             self._seen.update(zenoh.tokens(bridge_pattern(domain)))
             self._await_no_other()
             self._state = RUNNING
-            self._kept(zenoh.announce(self._token(RUNNING)))
+            self._closing(zenoh.announce(self._token(RUNNING)))
             state.close()
-            self._mirror = self._kept(Mirror(zenoh, self.dds, domain))
+            self._mirror = self._closing(Mirror(zenoh, self.dds, domain))
             self._mirror.start()
         except BaseException:
             self.close()
             raise
 
-    def _kept(self, opened: _ClosesT) -> _ClosesT:
+    def _closing(self, opened: _ClosesT) -> _ClosesT:
         self._open.append(opened)
         return opened
 
@@ -123,7 +123,7 @@ class Bridge:
             )
 
     def count(self) -> Count:
-        """Return what the bridge has met: on Zenoh, and on DDS."""
+        """Return the counts of what the bridge has met: on Zenoh, and on DDS."""
         return self._mirror.count()
 
     def close(self) -> None:

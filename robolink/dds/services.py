@@ -97,7 +97,7 @@ class Services:
         return server
 
     def introduce(self, one: Server | Client) -> None:
-        """Have a server or client speak with headers if such peers are there."""
+        """Let a server or client speak with headers if such peers are there."""
         role = Role.REPLY if isinstance(one, Server) else Role.REQUEST
         if any(map(has_header, self._others.get(one.stream.place_of(role), {}).values())):
             one.speak_with_headers()

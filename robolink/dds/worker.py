@@ -28,11 +28,11 @@ class Worker:
         threading.Thread(target=self._run, name="robolink dds", daemon=True).start()
 
     def post(self, work: Work) -> None:
-        """Have some work done, after all that was posted before."""
+        """Do some work, after all that was posted before."""
         self._todo.put(work)
 
     def post_idle(self, work: Work) -> None:
-        """Have some work done once there has been nothing else for a moment; once, however often it is posted."""
+        """Do some work once there has been nothing else for a moment; once, however often it is posted."""
         self.post(lambda: self._note_idle(work))
 
     def catch_up(self, seconds: float) -> bool:

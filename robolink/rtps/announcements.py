@@ -1,4 +1,4 @@
-"""What participants announce: themselves (SPDP) and their endpoints (SEDP), to and from parameter lists.
+"""Announcements of participants: themselves (SPDP) and their endpoints (SEDP), to and from parameter lists.
 
 Source: RTPS 2.5, 8.5.3, 8.5.4 and 9.6.3; the defaults of absent QoS: DDS 1.4, 2.2.3.
 """
@@ -92,7 +92,7 @@ def encode_participant(data: ParticipantData) -> bytes:
 
 
 def read_participant(payload: Buffer) -> ParticipantData:
-    """Return what a participant announced.
+    """Return the announcement of a participant.
 
     Raises:
         RtpsError: if it is nonsense, or does not say who it is.
@@ -151,7 +151,7 @@ def encode_endpoint(data: EndpointData) -> bytes:
 
 
 def read_endpoint(payload: Buffer, *, is_writer: bool) -> EndpointData:
-    """Return what a participant announced of an endpoint.
+    """Return the announcement of an endpoint.
 
     Args:
         payload: the sample.

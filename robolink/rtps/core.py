@@ -93,7 +93,7 @@ class Core:
         self.due = -math.inf
         """When `tick` is to be called: with anything that happens it may become earlier."""
         self.calls: list[tuple[Callable[[Any, Any], object], Any, Any]] = []
-        """What programs are to be told: functions and their two arguments."""
+        """Calls of programs that are due: functions and their two arguments."""
         self.nonsense = 0
         """Datagrams that were not RTPS, or contradicted themselves."""
         self._me, self._send = me, send
@@ -244,7 +244,7 @@ class Core:
         self._arm(reader)
 
     def goodbye(self) -> None:
-        """Tell everybody that this participant is gone."""
+        """Announce to everybody that this participant is gone."""
         self._discovery.goodbye()
 
     def peers(self) -> list[Peer]:

@@ -56,7 +56,7 @@ class Gone(bytes):
 
 
 class Resolve(NamedTuple):
-    """What the network says of addresses."""
+    """Answers of the network about addresses."""
 
     search: Sequence[Locator]
     """Where participants may be that are not known yet."""
@@ -66,7 +66,7 @@ class Resolve(NamedTuple):
 
 
 class PeerState:
-    """What is known of another participant."""
+    """State of another participant, as far as it is known."""
 
     __slots__ = ("default", "endpoints", "head", "heard", "metatraffic", "peer")
 
@@ -178,7 +178,7 @@ class Discovery:
         return (writer is not None and writer.is_known) or (reader is not None and reader.serial is not None)
 
     def goodbye(self) -> None:
-        """Tell everybody that we are gone."""
+        """Announce to everybody that we are gone."""
         inline = encode_inline(_GONE._replace(key_hash=self._me.prefix + ids.PARTICIPANT_ENTITY))
         key = encode_key(self._me.prefix + ids.PARTICIPANT_ENTITY)
         raw = encode_data(ids.UNKNOWN_ENTITY, ids.SPDP_WRITER, 2, key, inline, is_key=True)
@@ -288,7 +288,7 @@ class Discovery:
         """Announce that an endpoint of our own is gone."""
         writer = self.writers[is_writer]
         writer.discard(self._numbers.pop(guid))
-        writer.put(now, encode_key(guid), _GONE._replace(key_hash=guid), is_key=True, is_kept=False)
+        writer.put(now, encode_key(guid), _GONE._replace(key_hash=guid), is_key=True, is_stored=False)
 
     def fitting(self, topic: str, type_name: str, *, is_writer: bool) -> Iterable[Remote]:
         """Return others' writers, or readers, of a topic and type."""
@@ -348,7 +348,7 @@ class Discovery:
 
 
 def gone(data: Data) -> Gone | None:
-    """Return what a sample of discovery says is gone; None if it does not say so."""
+    """Return the GUID that a sample of discovery says is gone; None if it does not say so."""
     if not data.is_key and not data.inline.status:
         return None
     if data.inline.key_hash is not None:

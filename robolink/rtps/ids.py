@@ -20,7 +20,7 @@ VENDOR_ECLIPSE = b"\x01\x10"
 VENDOR_ROBOLINK = b"\x01\xee"
 
 PROTOCOL_VERSION = b"\x02\x03"
-"""What we say we speak. Others of version 2 are read whatever their minor number is."""
+"""Version that we announce. Others of version 2 are read whatever their minor number is."""
 
 UNKNOWN_ENTITY = b"\0\0\0\0"
 """As the reader of a submessage: all readers of the participant that are matched with its writer."""

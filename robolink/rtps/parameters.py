@@ -121,7 +121,7 @@ class Parameters:
     def locators(self, pid: int) -> tuple[Locator, ...]:
         """Return the UDP addresses among the locators with this number.
 
-        Others (shared memory, TCP, IPv6, ports that do not exist) are left out: they are no fault, but of no use here.
+        Others (shared memory, TCP, IPv6, ports that do not exist) are left out: they are of no use here.
         """
         found = []
         for value in self._values.get(pid, ()):

@@ -157,7 +157,7 @@ class Participant:
             return self._core.is_settled()
 
     def close(self) -> None:
-        """Say goodbye, and leave the domain. Safe to call twice, and in callbacks."""
+        """Leave the domain with a goodbye. Safe to call twice, and in callbacks."""
         with self._lock:
             if not self._is_open:
                 return
@@ -276,7 +276,7 @@ class Writer:
         """Send a sample on the caller's thread, and return its number; 0 after the participant was closed.
 
         It does not wait for readers. A RELIABLE writer keeps what they have not acknowledged: at least the last `depth`
-        samples, or with a depth of 0 up to `MOST_KEPT` of them. Older ones are lost to a reader that is that slow.
+        samples, or with a depth of 0 up to `MOST_STORED` of them. Older ones are lost to a reader that is that slow.
 
         Args:
             payload: serialized, with its header of 4 bytes. It is kept, not copied.
@@ -309,7 +309,7 @@ class Reader:
             return [*self._local.writers]
 
     def expect(self) -> None:
-        """Say that a sample should come soon, such as a reply: if none does, the writers are asked what they sent.
+        """Expect a sample soon, such as a reply: if none comes, the writers are asked what they sent.
 
         Else a sample that was lost, and behind which nothing comes, may be repaired late: a Fast DDS says only every
         3 s what it has sent.

@@ -1,4 +1,4 @@
-"""How far a participant reaches: whom it looks for, who is let in, and at which address somebody is met.
+"""Reach of a participant: whom it looks for, who is let in, and at which address somebody is met.
 
 Without an interface that is this machine, over loopback, whatever the range says: nothing leaves it. The rest is as
 rmw_fastrtps has it for ROS_AUTOMATIC_DISCOVERY_RANGE and ROS_STATIC_PEERS.
@@ -45,7 +45,7 @@ class Range(Enum):
 
 
 class Reach(NamedTuple):
-    """What was requested."""
+    """A requested reach."""
 
     interface: str = ""
     """Name or IPv4 address of the one interface that is used beside loopback; "": none; nothing leaves the machine."""
@@ -99,7 +99,7 @@ def _can_bind(address: str) -> bool:
 
 
 class Bounds:
-    """What became of a request on this machine: the pure decisions over addresses."""
+    """A request as it is on this machine: the pure decisions over addresses."""
 
     def __init__(
         self,

@@ -16,7 +16,7 @@ from robolink.rtps.writer import Send
 
 MOST_WAITING = 4_096
 MOST_WAITING_BYTES = 256 << 20
-"""What may wait for an earlier sample, of each writer. What arrives beyond it is dropped, and requested again later."""
+"""Bytes of each writer that may wait for an earlier sample. More is dropped at arrival, and requested again later."""
 MOST_HELD = 1 << 30
 """Bytes that may wait at all of a participant's readers. Beyond it, the writer of which most waits loses that."""
 LARGEST_SAMPLE = 1 << 30
@@ -59,13 +59,13 @@ class _Parts:
         self.until = self.total
         """Last of the fragments that are under way: once it is here, what is missing of them was lost."""
         self.had: int | None = None
-        """How many were here at the last request; None: there was none."""
+        """Number of those that were here at the last request; None: there was not any."""
         self.touched = 0.0
         """When the last fragment came."""
 
     @property
     def grows(self) -> bool:
-        """Whether fragments came since the last request, if there was one."""
+        """True if fragments came since the last request, if there was one."""
         return self.had is None or len(self.pieces) > self.had
 
     def missing(self) -> list[int]:
@@ -75,7 +75,7 @@ class _Parts:
 
 
 class Room:
-    """What waits at all readers of a participant together, for an earlier sample or for more fragments."""
+    """Room for what waits at all readers of a participant together, for an earlier sample or for more fragments."""
 
     def __init__(self, most: int = MOST_HELD) -> None:
         self.used = 0
@@ -110,14 +110,12 @@ class Room:
 
 
 class WriterProxy:
-    """What a reader knows of a writer."""
+    """A writer as a reader knows it."""
 
     __slots__ = (
         "acked",
         "acked_at",
         "address",
-        "asked",
-        "asked_at",
         "base",
         "bytes",
         "delay",
@@ -129,6 +127,8 @@ class WriterProxy:
         "next",
         "parts",
         "reliable",
+        "requested",
+        "requested_at",
         "serial",
         "waiting",
     )
@@ -151,14 +151,14 @@ class WriterProxy:
         self.serial = 0
         self.acked, self.acked_at = 0, -math.inf
         """Before which number all was acknowledged, and when."""
-        self.asked, self.asked_at = 0, -math.inf
+        self.requested, self.requested_at = 0, -math.inf
         """The highest number that was requested, and when."""
         self.delay = _GREET_AFTER
         self.due = math.inf
 
     @property
     def is_read(self) -> bool:
-        """Whether all has arrived that it has announced."""
+        """True if all has arrived that it has announced."""
         return self.is_known and self.next > self.last
 
 
@@ -268,8 +268,8 @@ class StatefulReader:
         proxy.last = max(proxy.last, info.number)
         if not proxy.is_known and not self.qos.transient_local:
             # What was before it may not be meant for this reader: only a heartbeat says where it begins.
-            if not proxy.asked:
-                proxy.asked = 1
+            if not proxy.requested:
+                proxy.requested = 1
                 self._greet(now, proxy)
         elif is_hole or now >= proxy.due:
             # At once, not when the next heartbeat comes: Fast DDS's may be 3 s away.
@@ -339,7 +339,7 @@ class StatefulReader:
             return
         if not proxy.is_known:
             proxy.is_known = True
-            proxy.asked, proxy.delay, proxy.due = 0, _ASK_AFTER, math.inf
+            proxy.requested, proxy.delay, proxy.due = 0, _ASK_AFTER, math.inf
         if first > proxy.next:
             self._skip(proxy, first)
         proxy.last = max(proxy.last, last)
@@ -438,9 +438,9 @@ class StatefulReader:
         """
         missing = self._missing(proxy)
         # Whoever expects an answer is there, and has nothing under way that was requested long ago.
-        again = again or now >= proxy.due or (answer and now >= proxy.asked_at + _ASK_AFTER)
-        if missing and (again or missing[-1] > proxy.asked):
-            proxy.asked, proxy.asked_at = missing[-1], now
+        again = again or now >= proxy.due or (answer and now >= proxy.requested_at + _ASK_AFTER)
+        if missing and (again or missing[-1] > proxy.requested):
+            proxy.requested, proxy.requested_at = missing[-1], now
             self._acknack(proxy, proxy.next, missing, final=False)
             self._wake(proxy, now + proxy.delay)
             proxy.delay = min(2 * proxy.delay, _ASK_SLOWEST)

@@ -48,7 +48,7 @@ _PACE_BYTES = 48 << 10
 """Between two pauses. A receiver with the usual buffer has room for three fragments of 63 kB: unpaced, 5 of 60 images
 of 1 MB came, with a pause after each fragment 59. The shortest pause takes some 0.1 ms on Linux."""
 _FULL_PAUSE, _FULL_TRIES = 0.0002, 100
-"""How long a datagram waits for room in our own buffer, before it is lost."""
+"""Time in seconds for which a datagram waits, and how often, for room in our own buffer, before it is lost."""
 
 # Numbers that the socket module does not have.
 _IP_MULTICAST_ALL = 49
@@ -98,7 +98,7 @@ class _Pair(NamedTuple):
 
 
 class Counts:
-    """What the network did to us, for whoever looks for the cause of losses."""
+    """Counts of the network's doings, for whoever looks for the cause of losses."""
 
     def __init__(self) -> None:
         self.received = 0
@@ -168,7 +168,7 @@ class Sockets:
 
     @property
     def hears_multicast(self) -> bool:
-        """Whether announcements by multicast come in: not on every machine."""
+        """True if announcements by multicast come in: not on every machine."""
         return self._group is not None
 
     @property
@@ -339,7 +339,7 @@ class Sockets:
 
 
 def _can_multicast(pair: _Pair) -> bool:
-    """Have a pair's multicast leave by its own interface only; return whether that is possible."""
+    """Let a pair's multicast leave by its own interface only; return whether that is possible."""
     # 0: does not leave the machine, 1: does not leave the network.
     lifetime = 0 if pair.address == LOOPBACK else 1
     try:

@@ -16,9 +16,9 @@ from robolink.rtps.parameters import SENTINEL, Buffer, Parameters, parameter
 
 HEADER_BYTES = 20
 DATA_BYTES = 24
-"""What a DATA adds to its payload and inline QoS."""
+"""Bytes that a DATA adds to its payload and inline QoS."""
 DATA_FRAG_BYTES = 36
-"""What a DATA_FRAG adds to its payload and inline QoS."""
+"""Bytes that a DATA_FRAG adds to its payload and inline QoS."""
 MOST_IN_SET = 256
 """Numbers that a set can span."""
 
@@ -33,7 +33,7 @@ _BILLION = 1_000_000_000
 
 
 class Inline(NamedTuple):
-    """What a sample's inline QoS says, as far as it matters here."""
+    """Inline QoS of a sample, as far as it matters here."""
 
     status: int = 0
     """STATUS_DISPOSED, STATUS_UNREGISTERED."""
@@ -69,7 +69,7 @@ class DataFrag(NamedTuple):
     first: int
     """Number of the first fragment here; they count from 1."""
     fragments: int
-    """How many."""
+    """Number of them."""
     fragment_size: int
     sample_size: int
     """Bytes of the whole sample, as the writer says: check it before you make room."""
@@ -80,7 +80,7 @@ class DataFrag(NamedTuple):
 
 
 class Heartbeat(NamedTuple):
-    """What a writer has: the samples from `first` to `last`, none if last is first - 1."""
+    """The samples that a writer has: those from `first` to `last`, none if last is first - 1."""
 
     reader: bytes
     writer: bytes
@@ -95,7 +95,7 @@ class Heartbeat(NamedTuple):
 
 
 class HeartbeatFrag(NamedTuple):
-    """What a writer has of a sample: the fragments up to `last`."""
+    """The fragments that a writer has of a sample: those up to `last`."""
 
     reader: bytes
     writer: bytes
@@ -105,7 +105,7 @@ class HeartbeatFrag(NamedTuple):
 
 
 class AckNack(NamedTuple):
-    """What a reader has: all before `base`; it requests the `missing` ones."""
+    """The samples that a reader has: all before `base`; it requests the `missing` ones."""
 
     reader: bytes
     writer: bytes
@@ -149,7 +149,7 @@ class InfoDestination(NamedTuple):
 
 
 class InfoSource(NamedTuple):
-    """Who sent the submessages that follow, as somebody says who passes them on."""
+    """The sender of the submessages that follow, as somebody says who passes them on."""
 
     prefix: bytes
     vendor: bytes

@@ -1,4 +1,4 @@
-"""What users of the room see of endpoints, samples and other participants."""
+"""Records in which users of the room see endpoints, samples and other participants."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Qos(NamedTuple):
-    """What an endpoint offers or requests. Times are in seconds, None is infinite."""
+    """Profile that an endpoint offers or requests. Times are in seconds, None is infinite."""
 
     reliable: bool = True
     transient_local: bool = False
@@ -22,7 +22,7 @@ class Qos(NamedTuple):
 
 
 class Info(NamedTuple):
-    """What is known of a sample beside its payload."""
+    """Facts of a sample beside its payload."""
 
     writer: bytes
     """GUID."""

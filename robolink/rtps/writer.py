@@ -31,13 +31,13 @@ FRAGMENT = 63 * 1024
 FAR_FRAGMENT = 1200
 """The same for other machines: what fits into one frame, also through a tunnel. With a larger datagram each lost frame
 costs all the others, 44 of them for one of 63 kB, and their rests fill the receiving kernel's memory for 30 s."""
-MOST_KEPT = 5_000
-MOST_KEPT_BYTES = 256 << 20
-"""What a writer that keeps all keeps at most. Then the oldest samples go, as with a depth: readers that did not have
+MOST_STORED = 5_000
+MOST_STORED_BYTES = 256 << 20
+"""Most bytes of a writer that keeps all. Then the oldest samples go, as with a depth: readers that did not have
 them get a GAP. So a reader that stands still costs no more than this, and `put` never waits."""
 
 _REPAIRED_DEPTHS, _MOST_REPAIRED, _MOST_REPAIRED_BYTES = 10, 100, 8 << 20
-"""How many times its depth a volatile writer keeps of what some have not acknowledged, and at most, in samples and in
+"""Times its depth that a volatile writer keeps of what some have not acknowledged, and at most, in samples and in
 bytes. The depth says what a program that is slow gets; datagrams that were lost in a row of samples are another matter.
 """
 
@@ -48,9 +48,9 @@ _BEAT_EVERY, _BEAT_LATE = 0.008, 0.02
 answers 5 ms after a heartbeat, and begins to wait anew with each: with one for each of 1,000 samples a second it would
 acknowledge nothing, nor request what it lost, before there is a pause."""
 _REMIND_SAMPLES, _REMIND_BYTES = 32, 256 << 10
-"""What may be under way before a heartbeat that goes with a sample requests an acknowledgement."""
+"""Samples and bytes that may be under way before a heartbeat that goes with a sample requests an acknowledgement."""
 _REPAIR_BYTES = 8 << 20
-"""What one ACKNACK gets at most; the heartbeat behind it makes the reader request the rest."""
+"""Most bytes that answer one ACKNACK; the heartbeat behind it makes the reader request the rest."""
 _REPAIR_PAUSE, _REPAIR_RATE = 0.01, 100e6
 """A large sample that was sent again is not sent once more before it can have arrived, at this many bytes a second. Nor
 does a reader get more again than that: with a few bytes it could have us send megabytes without end."""
@@ -70,7 +70,7 @@ class Change(NamedTuple):
     inline: bytes
     timestamp: int
     is_key: bool
-    is_kept: bool
+    is_stored: bool
     """For readers that come later; else only until all have acknowledged it."""
     ends: float = math.inf
     """When its lifespan is over, by the clock of `now`."""
@@ -87,7 +87,7 @@ def fragment_of(address: Locator) -> int:
 
 
 class ReaderProxy:
-    """What a writer knows of a reader."""
+    """A reader as a writer knows it."""
 
     __slots__ = ("acked", "address", "first", "guid", "head", "reliable", "repaired", "repaired_until", "serial")
 
@@ -123,7 +123,7 @@ class _Route:
 class StatefulWriter:
     """A writer, reliable or best-effort, volatile or with samples for readers that come later."""
 
-    def __init__(self, guid: bytes, qos: Qos, send: Send, most: int = MOST_KEPT) -> None:
+    def __init__(self, guid: bytes, qos: Qos, send: Send, most: int = MOST_STORED) -> None:
         """Make a writer without readers.
 
         Args:
@@ -140,11 +140,11 @@ class StatefulWriter:
         self.due = math.inf
         """When `tick` is to be called."""
         self.lost = 0
-        """Samples that were dropped because MOST_KEPT or MOST_KEPT_BYTES was reached."""
+        """Samples that were dropped because MOST_STORED or MOST_STORED_BYTES was reached."""
         self._send = send
         self._history: dict[int, Change] = {}
         """Rising by number; there may be holes."""
-        self._kept_bytes = 0
+        self._stored_bytes = 0
         self._passing = 0
         """Samples in the history that are kept only until all have acknowledged them."""
         self._most = most
@@ -185,7 +185,7 @@ class StatefulWriter:
             self._heartbeat(proxy)
             self._expect(now)
         elif first <= self.last:
-            self._resend(now, proxy, [change for change in self._history.values() if change.is_kept])
+            self._resend(now, proxy, [change for change in self._history.values() if change.is_stored])
 
     def unmatch(self, guid: bytes) -> bool:
         """Forget a reader. Returns whether it was known."""
@@ -217,7 +217,7 @@ class StatefulWriter:
         timestamp: int = 0,
         *,
         is_key: bool = False,
-        is_kept: bool | None = None,
+        is_stored: bool | None = None,
     ) -> int:
         """Send a sample to all readers, and keep it for as long as some may need it.
 
@@ -227,20 +227,20 @@ class StatefulWriter:
             inline: what goes with it.
             timestamp: nanoseconds since 1970; 0: unknown.
             is_key: the payload is a key: of something that is gone.
-            is_kept: whether it is kept for readers that come later; if not said, the writer's durability decides.
+            is_stored: whether it is kept for readers that come later; if not said, the writer's durability decides.
 
         Returns:
             Its number.
         """
         self.last = number = self.last + 1
-        kept = self.qos.transient_local if is_kept is None else is_kept
+        stored = self.qos.transient_local if is_stored is None else is_stored
         ends = math.inf if self.qos.lifespan is None else now + self.qos.lifespan
-        change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, kept, ends)
+        change = Change(number, payload, encode_inline(inline) if inline else b"", timestamp, is_key, stored, ends)
         reliable = any(route.reliable for route in self._routes.values())
-        if kept or reliable:
+        if stored or reliable:
             self._history[number] = change
-            self._kept_bytes += change.size
-            self._passing += not kept
+            self._stored_bytes += change.size
+            self._passing += not stored
             self._trim(now)
         if self._routes:
             self._under_way += 1
@@ -262,8 +262,8 @@ class StatefulWriter:
     def _drop(self, number: int) -> None:
         change = self._history.pop(number, None)
         if change is not None:
-            self._kept_bytes -= change.size
-            self._passing -= not change.is_kept
+            self._stored_bytes -= change.size
+            self._passing -= not change.is_stored
 
     def _trim(self, now: float) -> None:
         """Drop what is too old, or too much."""
@@ -272,10 +272,10 @@ class StatefulWriter:
                 self._drop(self.first)
         if depth := self.qos.depth:
             most = depth if self.qos.transient_local else max(depth, min(_REPAIRED_DEPTHS * depth, _MOST_REPAIRED))
-            while (size := len(self._history)) > most or (size > depth and self._kept_bytes > _MOST_REPAIRED_BYTES):
+            while (size := len(self._history)) > most or (size > depth and self._stored_bytes > _MOST_REPAIRED_BYTES):
                 self._drop(self.first)
             return
-        while len(self._history) > self._most or (self._kept_bytes > MOST_KEPT_BYTES and len(self._history) > 1):
+        while len(self._history) > self._most or (self._stored_bytes > MOST_STORED_BYTES and len(self._history) > 1):
             self._drop(next(iter(self._history)))
             self.lost += 1
 
@@ -380,9 +380,9 @@ class StatefulWriter:
             proxy.acked = base
             proxy.repaired = {number: until for number, until in proxy.repaired.items() if number >= base}
             self._forget_acknowledged()
-        wanted = [number for number in missing if 0 < number <= self.last]
-        if wanted:
-            self._repair(now, proxy, wanted)
+        requested = [number for number in missing if 0 < number <= self.last]
+        if requested:
+            self._repair(now, proxy, requested)
         elif not final:
             # It asks what there is, perhaps before it has heard any heartbeat.
             self._heartbeat(proxy, final=proxy.acked > self.last)
@@ -402,11 +402,11 @@ class StatefulWriter:
             self._send_change(proxy.address, proxy.head, guid[12:], change, beat, missing)
         self._expect(now)
 
-    def _repair(self, now: float, proxy: ReaderProxy, wanted: Sequence[int]) -> None:
+    def _repair(self, now: float, proxy: ReaderProxy, requested: Sequence[int]) -> None:
         again: list[Change] = []
         gone: list[int] = []
         size = 0
-        for number in wanted:
+        for number in requested:
             change = self._history.get(number)
             if change is None or number < proxy.first:
                 gone.append(number)
@@ -458,7 +458,7 @@ class StatefulWriter:
             self._send(proxy.address, [proxy.head, *bundle], 0.0)
 
     def _tell_gone(self, proxy: ReaderProxy, numbers: Sequence[int]) -> None:
-        """Tell a reader that samples will not come; the numbers are rising and span at most 256."""
+        """Announce to a reader that samples will not come; the numbers are rising and span at most 256."""
         first = max(self.first, proxy.first)
         if numbers[0] < first:
             # The heartbeat says where the samples begin. Readers of Fast DDS need it so on links
@@ -486,7 +486,7 @@ class StatefulWriter:
         for number, change in self._history.items():
             if number >= acked:
                 break
-            if not change.is_kept:
+            if not change.is_stored:
                 gone.append(number)
         for number in gone:
             self._drop(number)

@@ -99,10 +99,10 @@ def sender_part(gid: bytes) -> bytes:
     return bytes((GID_BYTES,)) + gid
 
 
-def answer_to(asked: bytes, answered: bytes) -> bytes:
-    """Return the attachment of an answer that is passed on: number and caller of `asked`, time of `answered`."""
-    when = answered if is_attachment(answered) else asked
-    return asked[:_TIME_AT] + when[_TIME_AT:_GID_LENGTH_AT] + asked[_GID_LENGTH_AT:]
+def answer_to(request: bytes, answered: bytes) -> bytes:
+    """Return the attachment of an answer that is passed on: number and caller of `request`, time of `answered`."""
+    when = answered if is_attachment(answered) else request
+    return request[:_TIME_AT] + when[_TIME_AT:_GID_LENGTH_AT] + request[_GID_LENGTH_AT:]
 
 
 def unpack_attachment(raw: bytes) -> Attachment:

@@ -23,7 +23,7 @@ from robolink.rtps.submessages import (
     encode_heartbeat,
     parse,
 )
-from robolink.rtps.writer import FRAGMENT, MOST_KEPT
+from robolink.rtps.writer import FRAGMENT, MOST_STORED
 from tests.support.big_endian import big_endian
 from tests.support.rtps_network import TYPE, Faults, Member, Network, numbers, sample
 
@@ -358,18 +358,18 @@ def test_a_writer_that_keeps_all_has_a_cap_and_the_oldest_are_skipped() -> None:
     network = Network()
     a, _, writer, _, got = met(network)
     network.faults = Faults(is_lost=lambda raw, address: True)
-    for number in range(MOST_KEPT + 100):
+    for number in range(MOST_STORED + 100):
         a.put(writer, sample(number))
-    assert (len(writer._history), writer.lost) == (MOST_KEPT, 100)
+    assert (len(writer._history), writer.lost) == (MOST_STORED, 100)
     network.faults = Faults()
-    network.run(20, until=lambda: len(got) == MOST_KEPT)
-    assert numbers(got) == list(range(100, MOST_KEPT + 100))
+    network.run(20, until=lambda: len(got) == MOST_STORED)
+    assert numbers(got) == list(range(100, MOST_STORED + 100))
     network.run(1)
     assert writer._history == {}
 
 
 def test_a_writer_that_keeps_all_keeps_no_more_bytes_than_its_cap(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robolink.rtps.writer.MOST_KEPT_BYTES", 1_000_000)
+    monkeypatch.setattr("robolink.rtps.writer.MOST_STORED_BYTES", 1_000_000)
     network = Network()
     a, _, writer, _, got = met(network)
     network.faults = Faults(is_lost=lambda raw, address: True)

@@ -71,8 +71,8 @@ def checked_network(environ: Mapping[str, str]) -> str:
 def dds_environ(environ: Mapping[str, str], interface: str) -> dict[str, str]:
     """Return the environment for the side of DDS: it leaves the machine only by an interface that is named."""
     if not interface:
-        kept = {name: value for name, value in environ.items() if name not in (_INTERFACE, _STATIC_PEERS)}
-        return kept | {RANGE: "OFF" if environ.get(RANGE, "").upper() == "OFF" else "LOCALHOST"}
+        others = {name: value for name, value in environ.items() if name not in (_INTERFACE, _STATIC_PEERS)}
+        return others | {RANGE: "OFF" if environ.get(RANGE, "").upper() == "OFF" else "LOCALHOST"}
     return {RANGE: "SUBNET"} | {**environ, _INTERFACE: interface}
 
 
@@ -114,14 +114,14 @@ def report(
         pause: Function that waits so many seconds.
     """
     before: Count | None = None
-    told = ""
+    printed = ""
     while True:
         check()
         now = count()
         # Once it has settled: at the start each node would have lines of its own.
-        if now == before and (text := met(now)) != told:
+        if now == before and (text := met(now)) != printed:
             say(text)
-            told = text
+            printed = text
         before = now
         pause(LOOK_EVERY)
 

@@ -49,7 +49,7 @@ class Dds(NamedTuple):
 
 
 def look(domain: int) -> Dds:
-    """Return who speaks DDS on a domain of this machine; takes half a second if anybody does."""
+    """Return the participants that speak DDS on a domain of this machine; takes half a second if anybody does."""
     linux = sys.platform.startswith("linux")
     ports = udp_ports() if linux else None
     ways = unmet_ways(domain, live_ports(), ports or ()) if linux else Ways()
@@ -80,11 +80,11 @@ def _met(domain: int) -> tuple[int, int]:
     try:
         while (now := clocks.monotonic()) < begin + MEETS_WITHIN and now < max(latest, begin + 2 * QUIET) + QUIET:
             time.sleep(0.02)
-        told = [each.user_data for each in participant.peers()]
+        announced = [each.user_data for each in participant.peers()]
     finally:
         participant.close()
-    bridges = sum(bool(mark_in(each)) for each in told)
-    return sum(b"enclave=" in each and not mark_in(each) for each in told), bridges
+    bridges = sum(bool(mark_in(each)) for each in announced)
+    return sum(b"enclave=" in each and not mark_in(each) for each in announced), bridges
 
 
 def udp_ports(root: Path = Path("/proc/net")) -> frozenset[int]:

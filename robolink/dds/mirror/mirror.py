@@ -243,7 +243,7 @@ class Mirror:
     # Figures
 
     def count(self) -> Count:
-        """Return what the mirror has met; from any thread, and roughly where all is in motion."""
+        """Return the counts of what the mirror has met; from any thread, and roughly where all is in motion."""
         places = list(self._places.items())
         nodes = [sum(isinstance(each.token, NodeToken) for each in list(known.values())) for known in self._known]
         lanes = [side.lane for side in self.sides]

@@ -37,7 +37,7 @@ class PassedCall:
             sample = self._flow.source.transport.read(content)
         except TransportError:  # an error in place of an answer: another server may do better, and the end comes
             return
-        # Callers find their call by its number, and by who asked: both are as the caller sent them.
+        # Callers find their call by its number, and by who request: both are as the caller sent them.
         self._query.reply(sample.payload, answer_to(self._query.attachment, sample.attachment))
 
     def end(self) -> None:
@@ -64,9 +64,9 @@ class _Serving:
         """Pass a call on, on the lane of the clients' side."""
         flow = self._flow
         query = flow.target.transport.accept(content)
-        asked, caller = query.attachment, gid_in(query.attachment)
+        request, caller = query.attachment, gid_in(query.attachment)
         # An echo: the mirror calls there in the name of its own clients, and the call comes to its own server too.
-        if caller in flow.target.own or not is_attachment(asked):
+        if caller in flow.target.own or not is_attachment(request):
             query.close()
             return
         key = next(iter(self.sources), "")
@@ -76,7 +76,7 @@ class _Serving:
         flow.make_room()
         call = PassedCall(flow, query, caller, key)
         flow.calls[call] = None
-        attachment = numbers_in(asked) + flow.sender_of(caller)
+        attachment = numbers_in(request) + flow.sender_of(caller)
         sink = flow.source.lane.sink(call)
         try:
             call.handle = flow.source.transport.call(key, query.payload, attachment, sink)
@@ -202,7 +202,7 @@ class ServiceFlow:
         return not self._servers and not self._clients
 
     def hashless(self, announced_on: Side) -> list[tuple[bytes, EndpointToken]]:
-        """Return what is announced on a side without a hash, since nobody knew one."""
+        """Return the announcements on a side without a hash, since nobody knew one."""
         table = self._servers if announced_on is self.target else self._clients
         return [
             (gid, token)

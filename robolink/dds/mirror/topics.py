@@ -114,7 +114,7 @@ class TopicFlow:
     def _add_publisher(self, gid: bytes, token: EndpointToken, type_hash: str) -> None:
         announced = self._target.announce(token, type_hash)
         self._publications[gid] = publication = _Publication(token, type_hash, announced)
-        if self._is_wanted(token):
+        if self._is_read(token):
             self._open(gid, publication)
 
     def _remove_publisher(self, gid: bytes) -> None:
@@ -122,9 +122,9 @@ class TopicFlow:
         self._close(gid, publication)
         self._target.withdraw(publication.announced, publication.token)
 
-    def _is_wanted(self, token: EndpointToken) -> bool:
-        wanted = self._of_hash
-        return bool(wanted) and (token.type_hash == NO_HASH or token.type_hash in wanted or NO_HASH in wanted)
+    def _is_read(self, token: EndpointToken) -> bool:
+        hashes = self._of_hash
+        return bool(hashes) and (token.type_hash == NO_HASH or token.type_hash in hashes or NO_HASH in hashes)
 
     def _open(self, gid: bytes, publication: _Publication) -> None:
         mirrored = publication.announced.token
@@ -176,7 +176,7 @@ class TopicFlow:
         self._of_hash[token.type_hash] = self._of_hash.get(token.type_hash, 0) + 1
         if self._of_hash[token.type_hash] == 1:
             for each, publication in self._publications.items():
-                if publication.flowing is None and self._is_wanted(publication.token):
+                if publication.flowing is None and self._is_read(publication.token):
                     self._open(each, publication)
         self._feed(key)
         self._subscriptions[gid] = _Subscription(token, self._source.announce(token, type_hash), key)
@@ -191,7 +191,7 @@ class TopicFlow:
         if not self._of_hash[token.type_hash]:
             del self._of_hash[token.type_hash]
             for each, publication in self._publications.items():
-                if publication.flowing is not None and not self._is_wanted(publication.token):
+                if publication.flowing is not None and not self._is_read(publication.token):
                     self._stop(each, publication)
         self._feed(key)
         self._source.withdraw(announced, token)
@@ -262,7 +262,7 @@ class TopicFlow:
         return not self._publications and not self._subscriptions
 
     def hashless(self, announced_on: Side) -> list[tuple[bytes, EndpointToken]]:
-        """Return what is announced on a side without a hash, since nobody knew one."""
+        """Return the announcements on a side without a hash, since nobody knew one."""
         return [(gid, each.token) for gid, each in self._announced_on(announced_on) if _has_none(each.announced.token)]
 
     def _announced_on(self, side: Side) -> Iterator[tuple[bytes, _Publication | _Subscription]]:
