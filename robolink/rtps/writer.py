@@ -461,8 +461,7 @@ class StatefulWriter:
         """Announce to a reader that samples will not come; the numbers are rising and span at most 256."""
         first = max(self.first, proxy.first)
         if numbers[0] < first:
-            # The heartbeat says where the samples begin. Readers of Fast DDS need it so on links
-            # that lose frames.
+            # The heartbeat says where the samples begin.
             self._heartbeat(proxy)
             numbers = [number for number in numbers if number >= first]
         if numbers:
