@@ -461,7 +461,7 @@ class StatefulWriter:
         """Announce to a reader that samples will not come; the numbers are rising and span at most 256."""
         first = max(self.first, proxy.first)
         if numbers[0] < first:
-            # The heartbeat says where the samples begin.
+            # The heartbeat says where the samples begin: Fast DDS's readers need it so on links that lose frames.
             self._heartbeat(proxy)
             numbers = [number for number in numbers if number >= first]
         if numbers:
