@@ -11,12 +11,9 @@ from tools.words import counts, places
 MOST = {
     "benchmarks": 1,
     "nodes": 1,
-    "robolink/cli": 4,
+    "robolink/cli": 1,
     "robolink/learn": 3,
-    "robolink/networks": 15,
-    "robolink/security": 2,
     "robolink/text": 1,
-    "robolink/transport": 26,
     "robolink/wire": 1,
     "robolink/workspace": 2,
 }
