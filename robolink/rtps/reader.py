@@ -129,7 +129,6 @@ class WriterProxy:
         "reliable",
         "requested",
         "requested_at",
-        "serial",
         "waiting",
     )
 
@@ -148,7 +147,6 @@ class WriterProxy:
         self.parts: dict[int, _Parts] = {}
         self.bytes = 0
         """Of `waiting` and `parts`."""
-        self.serial = 0
         self.acked, self.acked_at = 0, -math.inf
         """Before which number all was acknowledged, and when."""
         self.requested, self.requested_at = 0, -math.inf
@@ -191,6 +189,9 @@ class StatefulReader:
         """When `tick` is to be called."""
         self._send, self._deliver_next = send, deliver
         self._poke_at, self._poked = math.inf, 0
+        self._serial = 0
+        """Of the last request. It goes on when a writer comes back: a Fast DDS that had not missed us meanwhile ignores
+        what does not count up, and each greeting with a small number came twice as late as the one before."""
         self._room = Room() if room is None else room
         self._largest = largest
 
@@ -453,9 +454,12 @@ class StatefulReader:
         end = min(proxy.last + 1, proxy.next + MOST_IN_SET)
         return [n for n in range(proxy.next, end) if n not in proxy.waiting and n not in proxy.parts]
 
+    def _next_serial(self) -> int:
+        self._serial = (self._serial + 1) & 0x7FFFFFFF
+        return self._serial
+
     def _acknack(self, proxy: WriterProxy, base: int, missing: Sequence[int], *, final: bool) -> None:
-        proxy.serial += 1
-        raw = encode_acknack(self.entity, proxy.guid[12:], base, missing, proxy.serial & 0x7FFFFFFF, final=final)
+        raw = encode_acknack(self.entity, proxy.guid[12:], base, missing, self._next_serial(), final=final)
         self._send(proxy.address, [proxy.head, raw], 0.0)
 
     def _request_fragments(self, now: float, proxy: WriterProxy, ended: int = 0) -> None:
@@ -477,8 +481,7 @@ class StatefulReader:
         came = len(parts.pieces) - (parts.had or 0)
         # Not many more than came the last time: they come in one burst, for which the socket's buffer may have no room.
         missing = parts.missing()[: max(came, _FEW_FRAGMENTS)]
-        proxy.serial += 1
-        raw = encode_nack_frag(self.entity, proxy.guid[12:], number, missing, proxy.serial & 0x7FFFFFFF)
+        raw = encode_nack_frag(self.entity, proxy.guid[12:], number, missing, self._next_serial())
         self._send(proxy.address, [proxy.head, raw], 0.0)
         # As long as each request brings something, the next does not wait longer.
         parts.delay = _FRAGMENTS_LATE if parts.grows else min(2 * parts.delay, _ASK_SLOWEST)

@@ -446,6 +446,27 @@ def test_the_last_of_a_row_of_samples_is_not_missed_for_long() -> None:
     assert numbers(got) == [0, 1, 2, 3, 4]
 
 
+def test_requests_count_on_when_a_participant_comes_back() -> None:
+    """A Fast DDS that stood still for longer than its lease has not missed us, and ignores what does not count up."""
+    network = Network()
+    a, b, writer, reader, _ = met(network)
+    for each in range(5):
+        a.put(writer, sample(each))
+        network.run(1)
+
+    def serials() -> list[int]:
+        return [each.serial for each in network.submessages(AckNack) if each.reader == reader.entity]
+
+    before = serials()
+    network.sent.clear()
+    b.core._discovery.lose(a.core.prefix)
+    assert network.run(5, until=lambda: bool(reader.writers))
+    network.run(1)
+    after = serials()
+    assert before
+    assert min(after) > max(before)
+
+
 def test_a_lost_sample_is_requested_when_the_next_one_comes() -> None:
     network = Network()
     a, _, writer, _, got = met(network)
