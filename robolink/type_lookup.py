@@ -105,7 +105,9 @@ def _ask(context: Context, node_name: str, endpoint: EndpointToken) -> type[Any]
         client = node.create_client(GetTypeDescription, f"{node_name}/{SERVICE}")
         answer = client.try_call(request, timeout_sec=ANSWER_WITHIN)
     if not answer.successful:
-        raise TypeLookupError(f"refused: {answer.failure_reason or 'no reason given'}")
+        # As of services over DDS, which announces the hashes of their requests and replies: rcl finds types by hash.
+        why = "" if stated else " without the type's hash, which is not announced"
+        raise TypeLookupError(f"refused{why}: {answer.failure_reason or 'no reason given'}")
     description = from_message(answer.type_description)
     if description.type_name != endpoint.type_name:
         raise MessageError(f"it described {description.type_name} instead")

@@ -115,6 +115,19 @@ def test_what_a_stranger_says_is_fit_for_a_terminal(robot: Node, looker: Context
     assert len(str(caught.value)) < 700
 
 
+def test_a_refusal_without_a_hash_says_that_there_was_none(robot: Node, looker: Context) -> None:
+    """As rcl answers of the type of a service over DDS."""
+
+    def answer(request: Any, response: Any) -> Any:
+        response.failure_reason = "" if request.type_hash else "Failed to parse type hash"
+        return response
+
+    with spinning(answering(robot, answer)), pytest.raises(TypeLookupError) as caught:
+        type_of(looker, seen(looker, "/cart")._replace(type_hash=NO_HASH))
+    said = "refused without the type's hash, which is not announced: Failed to parse type hash"
+    assert said in str(caught.value)
+
+
 def test_ctrl_c_is_no_answer_of_a_node(robot: Node, looker: Context) -> None:
     def answer(_: Any, response: Any) -> Any:
         looker.interrupt()
