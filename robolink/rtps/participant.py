@@ -8,6 +8,7 @@ import os
 import threading
 import time
 from collections.abc import Callable, Sequence
+from time import perf_counter as steady
 from typing import Any
 
 from robolink.rtps import ids
@@ -107,7 +108,7 @@ class Participant:
             on_match: is called with readers that it is matched with (True), or was.
         """
         with self._lock:
-            local = self._core.add_writer(time.monotonic(), topic, type_name, qos, user_data, accepts, on_match)
+            local = self._core.add_writer(steady(), topic, type_name, qos, user_data, accepts, on_match)
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
         return Writer(self, local)
@@ -136,7 +137,7 @@ class Participant:
             on_match: is called with writers that it is matched with (True), or was.
         """
         with self._lock:
-            local = self._core.add_reader(time.monotonic(), topic, type_name, qos, sink, user_data, accepts, on_match)
+            local = self._core.add_reader(steady(), topic, type_name, qos, sink, user_data, accepts, on_match)
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
         return Reader(self, local)
@@ -174,14 +175,14 @@ class Participant:
         with self._lock:
             if not self._is_open:
                 return 0
-            number = self._core.put(time.monotonic(), local, payload, related, timestamp or time.time_ns())
+            number = self._core.put(steady(), local, payload, related, timestamp or time.time_ns())
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
         return number
 
     def _expect(self, local: LocalReader) -> None:
         with self._lock:
-            self._core.expect(time.monotonic(), local)
+            self._core.expect(steady(), local)
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
 
@@ -189,7 +190,7 @@ class Participant:
         with self._lock:
             if not self._is_open:
                 return
-            self._core.remove(time.monotonic(), local)
+            self._core.remove(steady(), local)
             sent, is_wake = self._finish()
         self._send(sent, is_wake)
 
@@ -219,19 +220,19 @@ class Participant:
     def _do_due(self) -> float:
         """Do what is due; return for how many seconds there is nothing to do."""
         with self._lock:
-            now = time.monotonic()
+            now = steady()
             if now >= self._core.due:
                 self._core.tick(now)
             sent, calls = self._take()
             self._wakes_at = due = self._core.due
         self._act(sent, calls)
         # A callback may have made something due earlier: then it has woken us, and `receive` returns at once.
-        return max(due - time.monotonic(), 0.0)
+        return max(due - steady(), 0.0)
 
     def _on_datagram(self, datagram: memoryview, source: Locator) -> None:
         with self._lock:
             try:
-                self._core.receive(time.monotonic(), datagram, source)
+                self._core.receive(steady(), datagram, source)
             except Exception:  # noqa: BLE001 - a fault of ours: what anybody sends must not end the participant
                 if not self._is_faulty:  # once: it may come with each datagram
                     self._is_faulty = True

@@ -71,7 +71,7 @@ def ports(domain: int, index: int) -> tuple[int, int]:
 class Here:
     """Addresses of this machine: those to which a socket can be bound."""
 
-    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
         self._now = now
         self._known: dict[str, bool] = {}
         self._forget_at = 0.0

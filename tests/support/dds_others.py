@@ -65,11 +65,11 @@ class Other:
 
     def __init__(self, fake: FakeNetwork, user_data: bytes = enclave_data("/"), vendor: bytes = EPROSIMA) -> None:
         self.listed: list[ParticipantEntities] = []
-        self.participant: FakeParticipant = fake.open(user_data=user_data, vendor=vendor, on_endpoint=self._on_endpoint)
         self.seen: dict[str, Endpoint] = {}
+        self.got: list[tuple[bytes, Info]] = []
+        self.participant: FakeParticipant = fake.open(user_data=user_data, vendor=vendor, on_endpoint=self._on_endpoint)
         self._writer = self.participant.writer(entities.TOPIC, entities.TYPE, LATCHED)
         self.participant.reader(entities.TOPIC, entities.TYPE, LATCHED, self._on_entities)
-        self.got: list[tuple[bytes, Info]] = []
 
     def _on_endpoint(self, endpoint: Endpoint, came: bool) -> None:
         if came:
