@@ -18,7 +18,7 @@ Retaining = Latch[tuple[int, Pair]]
 class LocalTopic:
     """One key's subscriptions, and what its latched publishers retain."""
 
-    __slots__ = ("_latches", "_lock", "sinks")
+    __slots__ = ("__weakref__", "_latches", "_lock", "sinks")
 
     def __init__(self) -> None:
         # Held while sinks are called, which only enqueue: so all see one order, and what joins misses and repeats

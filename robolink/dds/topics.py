@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import struct
+import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -69,7 +70,8 @@ class Topics:
         self.listeners: dict[Place, dict[bytes, Endpoint]] = {}
         """Readers of others, by topic and type."""
         self.readings: dict[Place, list[Reading]] = {}
-        self._local: dict[str, LocalTopic] = {}
+        self._local: weakref.WeakValueDictionary[str, LocalTopic] = weakref.WeakValueDictionary()
+        """By key, while there is an outlet or a subscription: a bridge meets ever more names."""
         self._outlets: dict[DdsOutlet, None] = {}
         self._subscriptions: dict[DdsSubscription, None] = {}
 

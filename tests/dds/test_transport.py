@@ -364,6 +364,20 @@ def test_a_writer_that_offers_less_is_read_with_a_warning(
     assert "a subscription of ROS 2 would get nothing from it over DDS" in warning
 
 
+def test_topics_that_come_and_go_leave_nothing_behind(ours: DdsTransport) -> None:
+    for number in range(3):
+        key = format_key(DataKey(0, f"/talk_{number}", STRING, HASH))
+        outlet, ear = ours.advertise(key, latched(1)), Ear(ours, key)
+        assert len(ours._topics._local) == 1
+        outlet.put(b"here", pack_attachment(1, 1, bytes(16)))
+        assert ear.next() == b"here"
+        ear.handle.close()
+        outlet.close()
+        del outlet, ear
+        assert not ours._topics._local
+    assert (ours._topics._outlets, ours._topics._subscriptions, ours._topics.readings) == ({}, {}, {})
+
+
 def test_a_best_effort_subscription_gets_what_a_reliable_writer_retains(
     fake: FakeNetwork, ours: DdsTransport, capsys: pytest.CaptureFixture[str]
 ) -> None:
