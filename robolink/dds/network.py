@@ -89,7 +89,9 @@ def reach_of(environ: Mapping[str, str]) -> Reach:
     """Return how far a participant reaches; raises TransportError for variables that are wrong."""
     text = environ.get(RANGE, "").upper()
     if text not in (*_LOCAL, "OFF", "SUBNET"):
-        raise TransportError(f"{RANGE} must be one of LOCALHOST, SUBNET, OFF, got {environ[RANGE][:40]!r}")
+        raise TransportError(
+            f"{RANGE} must be one of SYSTEM_DEFAULT, LOCALHOST, SUBNET, OFF, got {environ[RANGE][:40]!r}"
+        )
     if text == "OFF":
         return Reach(range=Range.OFF)
     peers = tuple(filter(None, (each.strip() for each in environ.get(STATIC_PEERS, "").split(";"))))

@@ -155,7 +155,7 @@ def test_a_launch_file_is_refused_in_one_line_before_anything_starts(
     file.write_text(LAUNCH.partition("\n")[2] if by_option else LAUNCH, encoding="utf-8")
     assert main([*(["--network", "dds"] if by_option else []), "launch", str(file)]) == 1
     assert capsys.readouterr().err == (
-        "robolink: ROS_AUTOMATIC_DISCOVERY_RANGE must be one of LOCALHOST, SUBNET, OFF, got 'nowhere'\n"
+        "robolink: ROS_AUTOMATIC_DISCOVERY_RANGE must be one of SYSTEM_DEFAULT, LOCALHOST, SUBNET, OFF, got 'nowhere'\n"
     )
 
 

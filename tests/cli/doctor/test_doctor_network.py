@@ -72,7 +72,7 @@ def test_the_settings_of_dds_are_read_as_nodes_read_them() -> None:
     assert "ROS_SECURITY_ENABLE" in read(ROBOLINK_NETWORK="dds", ROS_SECURITY_ENABLE="true").errors[0]
     wrong = Facts(settings=read(ROBOLINK_NETWORK="dds", ROS_AUTOMATIC_DISCOVERY_RANGE="far"))
     assert checks.settings(wrong).findings == [
-        "ROS_AUTOMATIC_DISCOVERY_RANGE must be one of LOCALHOST, SUBNET, OFF, got 'far'"
+        "ROS_AUTOMATIC_DISCOVERY_RANGE must be one of SYSTEM_DEFAULT, LOCALHOST, SUBNET, OFF, got 'far'"
     ]
 
 
