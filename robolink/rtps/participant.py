@@ -22,6 +22,8 @@ from robolink.rtps.types import Endpoint, Peer, Qos
 
 _LOG = logging.getLogger(__name__)
 _NOTHING: tuple[Any, ...] = ()
+_AFTER_FAULT = 0.1
+"""Seconds after a fault of ours in what was due, until it is tried again."""
 
 
 class Participant:
@@ -222,7 +224,11 @@ class Participant:
         with self._lock:
             now = steady()
             if now >= self._core.due:
-                self._core.tick(now)
+                try:
+                    self._core.tick(now)
+                except Exception:  # noqa: BLE001 - a fault of ours must not end the participant
+                    self._core.due = now + _AFTER_FAULT  # not at once: it may come each time
+                    self._log_fault("what was due was not done")
             sent, calls = self._take()
             self._wakes_at = due = self._core.due
         self._act(sent, calls)
@@ -233,15 +239,17 @@ class Participant:
         with self._lock:
             try:
                 self._core.receive(steady(), datagram, source)
-            except Exception:  # noqa: BLE001 - a fault of ours: what anybody sends must not end the participant
-                if not self._is_faulty:  # once: it may come with each datagram
-                    self._is_faulty = True
-                    _LOG.exception(
-                        "a datagram from %s:%s was not understood; more of this kind are not logged", *source
-                    )
+            except Exception:  # noqa: BLE001 - what anybody sends must not end the participant
+                self._log_fault(f"a datagram from {source[0]}:{source[1]} was not understood")
             sent, calls = self._take()
         if sent or calls:
             self._act(sent, calls)
+
+    def _log_fault(self, what: str) -> None:
+        """Log a fault of ours, the first only: it may come with each datagram."""
+        if not self._is_faulty:
+            self._is_faulty = True
+            _LOG.exception("%s; more of this kind are not logged", what)
 
     def _take(self) -> tuple[Sequence[tuple[Locator, list[Buffer], float]], Sequence[Any]]:
         sent = calls = _NOTHING

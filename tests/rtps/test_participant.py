@@ -275,3 +275,27 @@ def test_a_fault_at_a_datagram_is_logged_once_and_the_participant_goes_on(
         wait_until(lambda: len(got) == 10)
     assert numbers(got) == list(range(10))
     assert len(caplog.records) == 1
+
+
+def test_a_fault_in_what_is_due_is_logged_once_and_the_participant_goes_on(
+    pair: tuple[Participant, Participant], monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    a, b = pair
+    got: list[bytes] = []
+    tick = b._core.tick
+    faults: list[float] = []
+
+    def failing(now: float) -> float:
+        if len(faults) < 3:
+            faults.append(now)
+            raise KeyError("a fault of ours")
+        return tick(now)
+
+    monkeypatch.setattr(b._core, "tick", failing)
+    with caplog.at_level(logging.ERROR):
+        reader = b.reader("rt/a", TYPE, ALL, lambda payload, _: got.append(payload))
+        writer = a.writer("rt/a", TYPE, ALL)
+        wait_until(lambda: writer.matched() and reader.matched() and len(faults) == 3)
+        writer.put(sample(0))
+        wait_until(lambda: got)
+    assert len(caplog.records) == 1
