@@ -268,7 +268,7 @@ class Discovery:
         """Announce what is due, and forget those whose lease is over. Returns when to call it again."""
         self.announce(now)
         for prefix, state in list(self.peers.items()):
-            if now - state.heard >= state.peer.lease:
+            if now >= state.heard + state.peer.lease:  # the very sum that is due: a difference may round to less
                 self.lose(prefix)
         ends = (state.heard + state.peer.lease for state in self.peers.values())
         self.due = min(self._search_at, self._renew_at if self._at else math.inf, *ends)

@@ -182,6 +182,17 @@ def test_a_participant_that_is_killed_is_gone_after_its_lease(lease: float) -> N
     assert (a.core.peers(), a.core.endpoints()) == ([], [])
 
 
+def test_a_lease_ends_when_it_is_due_though_its_length_may_not_come_out_of_a_subtraction() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    network.run(1)
+    b.kill()
+    heard = next(each for each in (100 + n / 10 for n in range(1, 1000)) if (each + 20.0) - each < 20.0)
+    a.core._discovery.peers[b.core.prefix].heard = heard
+    assert a.core.tick(heard + 20.0) > heard + 20.0  # else it would be called again and again
+    assert not a.core.peers()
+
+
 def test_leases_do_not_end_while_anything_comes() -> None:
     network = Network()
     a, b = network.join(lease=2), network.join(lease=4)
