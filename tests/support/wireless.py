@@ -150,6 +150,8 @@ class Medium:
 
 def _end(namespace: str, number: int) -> int:
     """Make an interface in a namespace; returns what its frames are read from and written to."""
+    if sys.platform == "win32":
+        raise OSError("a wireless network needs network namespaces, which Linux has")
     import fcntl  # no other system has it, and this module is imported to say so
 
     made = f"rl{os.getpid()}.{number}"
@@ -190,7 +192,8 @@ def main() -> None:
     robot, laptop, air = sys.argv[1:]
     ends = [_end(name, number) for number, name in enumerate((robot, laptop))]
     with contextlib.suppress(OSError):
-        os.nice(-10)  # what it adds on a busy machine would look like the air
+        if sys.platform != "win32":
+            os.nice(-10)  # what it adds on a busy machine would look like the air
     print("ready", flush=True)  # noqa: T201
     _relay(ends, Medium(Air(**json.loads(air))))
 
