@@ -44,6 +44,7 @@ LEASE = 20.0
 
 _SHORTEST_LEASE = 1.0
 _SEARCH_EVERY, _BURST_EVERY, _BURST = 1.0, 0.1, 5
+_ANSWER_EVERY = 0.02
 _RENEW_EVERY = 3.0
 """Seconds between announcements to those who know us: some six in a lease, as Fast DDS has it."""
 _GONE = Inline(ids.STATUS_DISPOSED | ids.STATUS_UNREGISTERED)
@@ -68,11 +69,11 @@ class Resolve(NamedTuple):
 class PeerState:
     """State of another participant, as far as it is known."""
 
-    __slots__ = ("default", "endpoints", "head", "heard", "metatraffic", "peer")
+    __slots__ = ("answered", "default", "endpoints", "head", "heard", "metatraffic", "peer")
 
     def __init__(self, now: float, peer: Peer, metatraffic: Locator, default: Locator, head: bytes) -> None:
         self.peer, self.metatraffic, self.default, self.head = peer, metatraffic, default, head
-        self.heard = now
+        self.heard = self.answered = now
         self.endpoints: set[bytes] = set()
 
 
@@ -205,7 +206,9 @@ class Discovery:
             if peer != state.peer:
                 state.peer = peer
                 self._on_peer(peer, True)
-            if not self._is_known_to(prefix):
+            # Not each one: two that do not know that they are known would answer each other's answers without end.
+            if now >= state.answered + _ANSWER_EVERY and not self._is_known_to(prefix):
+                state.answered = now
                 self._send(state.metatraffic, [self._announcement], 0.0)
         elif said.domain is None or said.domain == self._me.domain:
             self._meet(now, said, source)

@@ -74,6 +74,16 @@ def test_a_participant_that_did_not_listen_yet_is_told_again_when_it_announces_i
     assert network.run(0.3, until=lambda: bool(other.core.peers()) and bool(us.core.peers()))
 
 
+def test_two_that_do_not_know_that_they_are_known_do_not_answer_each_other_without_end() -> None:
+    network = Network()
+    a, b = network.join(), network.join()
+    network.faults = Faults(is_lost=lambda raw, address: ids.SPDP_WRITER not in raw)
+    network.run(1)
+    assert a.core.peers()
+    assert b.core.peers()
+    assert sum(address in (a.metatraffic, b.metatraffic) for _, _, address in network.sent) < 300
+
+
 def test_samples_that_come_before_their_writer_is_known_are_not_lost() -> None:
     network = Network()
     a, b = network.join(), network.join()
