@@ -45,6 +45,7 @@ LEASE = 20.0
 _SHORTEST_LEASE = 1.0
 _SEARCH_EVERY, _BURST_EVERY, _BURST = 1.0, 0.1, 5
 _ANSWER_EVERY = 0.02
+"""Seconds between answers to the announcements of one who does not know that we know it."""
 _RENEW_EVERY = 3.0
 """Seconds between announcements to those who know us: some six in a lease, as Fast DDS has it."""
 _GONE = Inline(ids.STATUS_DISPOSED | ids.STATUS_UNREGISTERED)
