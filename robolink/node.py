@@ -1042,6 +1042,7 @@ class Node(Destroyable):
         context: Context | None = vars(self).get("_context")
         if context is None or self._destroyed or "_announced_" not in vars(self):
             return
+        context.given_parameters.look(self)  # takes no lock; else what it declared would count as never declared
         if not context.ok() or not context.transport.threaded:
             return
         with contextlib.suppress(RuntimeError):  # Python ends, or there are too many threads

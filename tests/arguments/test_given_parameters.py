@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,16 @@ def test_what_another_node_may_declare_is_not_told(log_lines: list[Record]) -> N
 
 def test_what_is_declared_late_is_not_told(log_lines: list[Record]) -> None:
     run("-p", "colour:=1", declares="colour")
+    assert told(log_lines) == []
+
+
+def test_what_a_node_declared_that_nobody_refers_to_any_more_is_not_told(log_lines: list[Record]) -> None:
+    """As that of a program which is interrupted before it spins: its node goes before the context does."""
+    context = Context(transport="memory")
+    context.init(["--ros-args", "-p", "speed:=1.0"])
+    with context:
+        Robot(context)
+        gc.collect()
     assert told(log_lines) == []
 
 
