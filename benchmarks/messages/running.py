@@ -14,9 +14,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from robolink.transport.port_sharing import free_domain
+
 PACKAGE = Path(__file__).parent
-DOMAIN = 100 + os.getpid() % 130
-"""Domain of this run alone, so that two runs on one machine do not hear each other."""
+_RESERVED = contextlib.ExitStack()
+DOMAIN = _RESERVED.enter_context(free_domain())
+"""Domain of this run alone, reserved while it lasts, so that two runs on one machine do not hear each other."""
 
 SILENCE = 0.4
 """Seconds without a message after which a flood has passed."""
