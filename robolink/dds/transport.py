@@ -33,7 +33,6 @@ from robolink.wire import (
     EndpointKind,
     EndpointToken,
     NodeToken,
-    check_attachment,
     format_key,
     gid_of,
     pair_opener,
@@ -241,15 +240,7 @@ class DdsTransport(Transport):
 
     def opener(self, check: Callable[[bytes], object], decode: Callable[[bytes], Any]) -> Callable[[Any], Any]:
         """Return a function that does `read`, `check` and `decode` to an item, without a call of `read`."""
-        if check is check_attachment:
-            return pair_opener(decode)
-
-        def opened(arrived: tuple[bytes, bytes]) -> Any:
-            payload, attachment = arrived
-            check(attachment)
-            return decode(payload)
-
-        return opened
+        return pair_opener(check, decode)
 
     def accept(self, arrived: Any) -> Query:
         """Return the item itself: it is a Query already."""

@@ -21,7 +21,7 @@ from robolink.system.waits import fork_lock
 from robolink.transport.base import Handle, NumberingOutlet, Query, Sample, Sink, Transport, make_sample, refuse_giant
 from robolink.transport.history import Latch, latched_depth
 from robolink.transport.patterns import matcher
-from robolink.wire import check_attachment, pair_opener
+from robolink.wire import pair_opener
 
 
 class Bus:
@@ -122,15 +122,7 @@ class MemoryTransport(Transport):
 
     def opener(self, check: Callable[[bytes], object], decode: Callable[[bytes], Any]) -> Callable[[Any], Any]:
         """Return a function that does `read`, `check` and `decode` to an item, without a call of `read`."""
-        if check is check_attachment:
-            return pair_opener(decode)
-
-        def opened(arrived: tuple[bytes, bytes]) -> Any:
-            payload, attachment = arrived
-            check(attachment)
-            return decode(payload)
-
-        return opened
+        return pair_opener(check, decode)
 
     def accept(self, arrived: Any) -> Query:
         """Return the item itself: it is a Query already."""

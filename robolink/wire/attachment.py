@@ -72,11 +72,21 @@ def check_attachment(raw: bytes) -> None:
         unpack_attachment(raw)  # it says what is wrong
 
 
-def pair_opener(decode: Callable[[bytes], Any]) -> Callable[[tuple[bytes, bytes]], Any]:
-    """Return a function of a payload and its attachment that decodes the payload if `check_attachment` lets it.
+def pair_opener(
+    check: Callable[[bytes], object], decode: Callable[[bytes], Any]
+) -> Callable[[tuple[bytes, bytes]], Any]:
+    """Return a function of a payload and its attachment that decodes the payload if `check` lets it.
 
-    The check is written out, and all of it one call, since in virtual time every message comes here.
+    `check_attachment` is written out, and all of it one call, since in virtual time every message comes here.
     """
+    if check is not check_attachment:
+
+        def checked(pair: tuple[bytes, bytes]) -> Any:
+            payload, raw = pair
+            check(raw)
+            return decode(payload)
+
+        return checked
 
     def opened(pair: tuple[bytes, bytes]) -> Any:
         payload, raw = pair
