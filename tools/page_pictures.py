@@ -90,7 +90,7 @@ def take(
                     browser.wait(f"{FILM}?.end && {FILM}.at == {FILM}.end && !{FILM}.changed", 60.0)
                 time.sleep(seconds)
                 file = browser.screenshot(folder / f"{named.format(scene=scene, size=size, theme=theme)}.png")
-                print(file, *browser.problems[:3])
+                sys.stdout.write(f"{file} {' '.join(browser.problems[:3])}\n")
                 browser.problems.clear()
         browser.open("about:blank")  # a page that is left open would look for its server
 
