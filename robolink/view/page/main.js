@@ -12,6 +12,8 @@
 //   "parameters" / "recording" / "status" ...)
 // - time, now, clock(): time.live, or the timeline was dragged to time.at; now is the shown time and clock() that of
 //   what arrives, in milliseconds
+// - isBag: the server plays a bag, where nothing can be driven, called or recorded, and clock() is the bag's; isLearn: the
+//   page of exercises
 // - tf: lookup(frame): pose in the fixed frame, or null; fixed, names()
 // - words(key, values), tell(text, isError): texts of the page, and notes to the person
 // - on("pick", (topic, path) => ...): a number in the tree of a message was clicked; a drag has text/robolink-field,
@@ -57,6 +59,12 @@ class App extends Emitter {
 
   /** Subscribe to a topic: see Topics.listen. */
   listen(name, options) { return this.store.listen(name, options); }
+
+  /** True where the server plays a bag: nothing can be driven, called or recorded, and time is the bag's. */
+  get isBag() { return Boolean(this.connection.info?.robolink?.bag); }
+
+  /** True on the page of `robolink learn view`. */
+  get isLearn() { return Boolean(this.connection.info?.robolink?.exercises); }
 
   /** Time that the page shows, in milliseconds. */
   get now() { return this.time.live ? this.clock() : this.time.at; }

@@ -101,6 +101,7 @@ class Hub:
         }
         given = self.source.information()
         own = {"version": _version(), "readOnly": not client.trusted, "host": self._host, **given["robolink"]}
+        own["exercises"] = self.learning is not None
         return shown | given | {"robolink": own}
 
     def greet(self, client: Client) -> None:
