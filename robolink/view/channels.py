@@ -170,6 +170,9 @@ class Source(Protocol):
     def sweep(self) -> None:
         """Deliver all that has arrived."""
 
+    def now(self) -> int:
+        """Return the time by which messages are dated, in ns since the epoch: the system's, or a bag's."""
+
     def ends(self, channel: Channel) -> tuple[int, int]:
         """Return how many publishers and subscriptions a channel has."""
 

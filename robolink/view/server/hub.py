@@ -54,7 +54,7 @@ class Hub:
         self.system = source if isinstance(source, LiveSource) else None
         self.parameters = Parameters(self.system) if self.system is not None else None
         self.connections = Connections(self.system) if self.system is not None else None
-        self.statistics = Statistics(source)
+        self.statistics = Statistics(source, clocks.monotonic if self.bag is None else self._bag_seconds)
         self.recorder = Recorder(self.system, self._tell_pages) if self.system is not None else None
         self.learning = Learning(exercises, self._tell_pages) if exercises is not None else None
         self.clients: set[Client] = set()
@@ -70,6 +70,9 @@ class Hub:
     def now(self) -> float:
         """Return the time of a steady clock, in seconds."""
         return clocks.monotonic()
+
+    def _bag_seconds(self) -> float:
+        return self.source.now() / 1e9
 
     def join(self, client: Client) -> None:
         """Greet a client, and serve it from now on."""
@@ -259,6 +262,8 @@ class Hub:
             for each in self.clients:
                 each.outbox.clear()
         did_seek = self.bag.control(request)
+        if did_seek:
+            self.statistics.jump()
         for each in self.clients:
             id_ = request.request_id if each is client else ""
             each.send(self.bag.playback_state(did_seek=did_seek, request_id=id_))

@@ -7,13 +7,15 @@ from typing import Any
 
 import psutil
 
-from robolink.system import clocks
 from robolink.view.channels import Channel, Source
 from robolink.view.protocol import answers
 from robolink.view.server.outbox import Listener
 
 PERIOD = 1.0
 """Interval of the statistics, in seconds."""
+
+SHORTEST = 0.5
+"""Time in seconds over which a rate is measured at least: less of a bag may pass in an interval, as it is paused."""
 
 HEAVY = 2e6
 """Bandwidth in bytes a second above which a channel that is received for its figures alone is only sampled."""
@@ -29,10 +31,11 @@ class Statistics:
 
     Args:
         source: Where the channels come from.
-        clock: Function that returns the time of a steady clock, in seconds.
+        clock: Function that returns the time by which rates are measured, in seconds: that of a steady clock, or of a
+            bag, in which messages are as far apart as they were recorded at any speed.
     """
 
-    def __init__(self, source: Source, clock: Callable[[], float] = clocks.monotonic) -> None:
+    def __init__(self, source: Source, clock: Callable[[], float]) -> None:
         self._source, self._clock = source, clock
         self._resting: dict[int, int] = {}
         """Intervals that are left until a channel is received again, by its id."""
@@ -63,6 +66,10 @@ class Statistics:
                 self._source.listen(each)
                 self._before.setdefault(each.id, (now, each.count, each.bytes))
 
+    def jump(self) -> None:
+        """Measure anew, as a bag was moved to another place; until then rates are what they were."""
+        self._before.clear()
+
     def forget(self, channels: Iterable[Channel]) -> None:
         """Forget channels that have gone."""
         for each in channels:
@@ -88,7 +95,7 @@ class Statistics:
         """
         if not self._followers:
             return
-        now, wall = self._clock(), clocks.now()
+        now, wall = self._clock(), self._source.now()
         topics = [self._topic(each, now, wall) for each in self._source.channels.values()]
         server = {"clients": clients, "cpu": self._process.cpu_percent() / 100, "dropped": dropped}
         text = answers.text("statistics", topics=topics, server=server)
@@ -108,9 +115,13 @@ class Statistics:
         return True
 
     def _measure(self, channel: Channel, now: float) -> None:
-        then, count, size = self._before.get(channel.id, (now, channel.count, channel.bytes))
+        then, count, size = self._before.setdefault(channel.id, (now, channel.count, channel.bytes))
+        spent = now - then
+        if 0 <= spent < SHORTEST and (channel.id in self._flows or not spent):
+            return
         self._before[channel.id] = (now, channel.count, channel.bytes)
-        spent = max(now - then, 1e-3)
+        if spent < 0:  # the bag plays from its begin again
+            return
         self._flows[channel.id] = ((channel.count - count) / spent, (channel.bytes - size) / spent)
         if self._flows[channel.id][1] > HEAVY and not channel.takers:
             self._resting[channel.id] = REST
@@ -120,13 +131,14 @@ class Statistics:
         is_resting = self._is_resting(channel, now)
         if not is_resting:
             self._measure(channel, now)
-        rate, bandwidth = self._flows[channel.id]
+        rate, bandwidth = self._flows.get(channel.id, (0.0, 0.0))
+        is_dated = channel.count and not is_resting and channel.last <= wall
         publishers, subscriptions = self._source.ends(channel)
         return {
             "channelId": channel.id,
             "rate": round(rate, 2),
             "bandwidth": round(bandwidth, 1),
-            "age": round(max(0, wall - channel.last) / 1e9, 3) if channel.count and not is_resting else None,
+            "age": round((wall - channel.last) / 1e9, 3) if is_dated else None,
             "count": channel.count,
             "publishers": publishers,
             "subscriptions": subscriptions,

@@ -142,6 +142,10 @@ class BagSource:
         if self._state() == ENDED:
             self._audience.playback_changed(did_seek=False)
 
+    def now(self) -> int:
+        """Return the time in the bag, in ns since the epoch."""
+        return self._playback.time
+
     def _state(self) -> int:
         return ENDED if self._playback.is_over else PAUSED if self._playback.is_paused else PLAYING
 

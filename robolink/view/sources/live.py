@@ -371,6 +371,10 @@ class LiveSource:
         listening = self._listening.get(channel.id)
         return [] if listening is None else listening.retained()
 
+    def now(self) -> int:
+        """Return the system's time, in ns since the epoch."""
+        return clocks.now()
+
     def sweep(self) -> None:
         """Deliver all that has arrived."""
         self._spent = 0.0

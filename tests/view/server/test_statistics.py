@@ -18,9 +18,9 @@ class Cameras:
         self.heavy, self.light = Channel(1, "/image", "a/msg/B", ""), Channel(2, "/odom", "a/msg/B", "")
         self.channels = {1: self.heavy, 2: self.light}
         self.received: set[int] = set()
-        self.now = 0.0
+        self.time = 0.0
         self.told: dict[int, dict[str, Any]] = {}
-        self.statistics = Statistics(cast(Source, self), lambda: self.now)
+        self.statistics = Statistics(cast(Source, self), lambda: self.time)
         self.statistics.follow(self)
 
     def listen(self, channel: Channel) -> None:
@@ -28,6 +28,9 @@ class Cameras:
 
     def leave(self, channel: Channel) -> None:
         self.received.discard(channel.id)
+
+    def now(self) -> int:
+        return round(self.time * 1e9)
 
     def ends(self, channel: Channel) -> tuple[int, int]:
         return 1, 0
@@ -43,10 +46,10 @@ class Cameras:
 
     def second(self) -> tuple[bool, float]:
         """Let a second pass; return whether the heavy channel is received after it, and its bandwidth as it is told."""
-        self.now += PERIOD
+        self.time += PERIOD
         for each in self.channels.values():
             if each.id in self.received:
-                each.note(int(self.now * 1e9), int(5 * HEAVY) if each is self.heavy else 100)
+                each.note(self.now(), int(5 * HEAVY) if each is self.heavy else 100)
         self.statistics.tick(1, 0)
         return 1 in self.received, self.told[1]["bandwidth"]
 
@@ -73,3 +76,38 @@ def test_a_channel_that_somebody_looks_at_is_not_sampled() -> None:
     assert not cameras.second()[0]
     cameras.statistics.part(cameras)
     assert cameras.received == set()
+
+
+class Played(Cameras):
+    """A bag of ten messages a second, whose time the test moves."""
+
+    def play(self, seconds: float) -> dict[str, Any]:
+        """Play on, and return the figures that are told."""
+        for _ in range(round(seconds * 10)):
+            self.time += 0.1
+            self.light.note(self.now(), 100)
+        self.statistics.tick(1, 0)
+        return self.told[2]
+
+    def move(self, to: float) -> None:
+        """Move the bag to another place, where the last message of a second before is told."""
+        self.time = to
+        self.light.note(round((to - 1.0) * 1e9), 100)
+        self.statistics.jump()
+
+
+def test_rates_and_ages_of_a_bag_are_in_its_time_at_any_speed() -> None:
+    bag = Played()
+    assert bag.play(0)["rate"] == 0.0
+    assert bag.play(0)["age"] is None
+    for seconds in (8.0, 1.0, 0.2, 0.2, 0.2, 0.0, 0.0):  # faster, as recorded, slower, and paused
+        told = bag.play(seconds)
+        assert (told["rate"], told["bandwidth"], told["age"]) == (10.0, 1000.0, 0.0)
+    for place in (500.0, 100.0):
+        bag.move(place)
+        told = bag.play(0)
+        assert (told["rate"], told["age"]) == (10.0, 1.0)
+        assert bag.play(1.0)["rate"] == 10.0
+    bag.time = 20.0  # it plays from its begin again, and no message has come since
+    told = bag.play(0)
+    assert (told["rate"], told["age"]) == (10.0, None)
