@@ -43,6 +43,28 @@ export function brief(value, digits = 3) {
   return `${Number(value.toPrecision(digits))}`;
 }
 
+const known = new Map(); // text -> pixels
+let measure; // context of a canvas
+
+/** Width of a text in pixels, in the font of tables. */
+export function widthOf(text) {
+  if (known.size > 5000) known.clear();
+  if (!known.has(text)) {
+    measure ??= document.createElement("canvas").getContext("2d");
+    measure.font = "12px system-ui, sans-serif";
+    known.set(text, measure.measureText(text).width);
+  }
+  return known.get(text);
+}
+
+/** Text as far as there are pixels for it: what does not fit is left out of its middle, since both ends tell things apart. */
+export function fitted(text, room) {
+  for (let kept = text.length, short = text; ; short = `${text.slice(0, kept * 0.4)}…${text.slice(text.length - Math.ceil(kept * 0.6))}`) {
+    if (!(kept > 1) || widthOf(short) <= room) return short;
+    kept = Math.min(kept - 1, Math.ceil((kept * room) / widthOf(short)));
+  }
+}
+
 /** True where keys write text: shortcuts leave them alone. */
 export function isTyping(target) {
   if (target instanceof HTMLInputElement) return !/^(range|checkbox|radio|button|color)$/.test(target.type);

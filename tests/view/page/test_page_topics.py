@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from robolink.bag.reader import open_bag
 from robolink.interfaces.geometry_msgs.msg import Twist
 from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.interfaces.std_msgs.msg import String
 from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.view.server import Settings, View
+from robolink.view.sources.bag import BagSource
+from tests.support.bags import ten_messages, write
 from tests.support.browser import Browser, needs_chromium
 from tests.support.pages import Page, opened
 
@@ -120,3 +125,55 @@ def test_the_tree_is_walked_by_keys(browser: Browser) -> None:
         tree(page, "linear.x")
         browser.press("ArrowDown")
         assert browser.js("document.activeElement.dataset.path") == "linear.x"
+
+
+CELLS = "[...document.querySelectorAll('tr[data-topic] :is(td.topic button, td.type)')]"
+"""Names and types of all rows."""
+
+
+def test_names_and_types_are_whole_where_there_is_room(browser: Browser) -> None:
+    with opened(browser, "topics") as page:
+        publish(page)
+        page.node.create_publisher(String, "a_robot_of_many/sensors/which_have/very_long_names/and_types", LATCHED)
+        browser.wait("document.querySelectorAll('tr[data-topic]').length >= 5")
+        shown = f"{CELLS}.map((each) => each.textContent).join()"
+        whole = "robolink.store.list().flatMap((each) => [each.name, each.type]).join()"
+        try:
+            browser.wait(f"{shown} == {whole}")
+            for width in (500, 300):
+                browser.resize(width, 600)
+                browser.wait(f"{shown}.includes('…')")
+                browser.wait(f"{CELLS}.every((each) => each.scrollWidth <= each.clientWidth)")
+                browser.wait("document.querySelector('.topics').scrollWidth <= innerWidth")
+                titles = browser.js(f"{CELLS}.map((each) => each.title).join()")
+                assert titles == browser.js(whole)
+                page.picture(f"topics_{width}")
+        finally:
+            browser.resize(1280, 720)
+
+
+def test_a_topic_is_opened_with_its_branches_unfolded(browser: Browser) -> None:
+    columns = [
+        {"width": 50, "cells": [{"id": "topics", "height": 100, "options": {"topic": "/cmd_vel", "open": True}}]}
+    ]
+    with opened(browser, layout={"columns": columns}) as page:
+        publish(page)
+        assert tree(page, "linear.x") == ["linear", "x 0.5", "y 0", "z 0", "angular", "x 0", "y 0", "z 0"]
+        assert browser.js("document.querySelector('.detail p').textContent") == "geometry_msgs/msg/Twist"
+        browser.click("[data-path=angular]")
+        browser.wait("!document.querySelector('[data-path=\"angular.x\"]')")
+        options = "JSON.parse(localStorage['robolink.layout']).columns[0].cells[0].options"
+        assert browser.js(options)["open"] == ["linear"]  # and the browser remembers it
+
+
+def test_a_bag_has_ages_in_its_time_and_no_publishers(browser: Browser, tmp_path: Path) -> None:
+    write(tmp_path / "bag", ten_messages())
+    with (
+        open_bag(tmp_path / "bag") as bag,
+        View(BagSource(bag), Settings(port=0)) as view,
+        opened(browser, "topics", view=view) as page,
+    ):
+        age = "document.querySelector('tr[data-topic=\"/chatter\"] td.age')?.textContent"
+        browser.wait(f"/^[0-5]\\.\\d s$/.test({age})")
+        assert browser.js("document.querySelector('th.publishers').getClientRects().length") == 0
+        page.picture("topics_bag")

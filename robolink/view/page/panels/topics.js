@@ -1,11 +1,13 @@
 // Topics panel: type, rate, bandwidth, age and ends of each topic, and the tree of the latest message of one.
 
-import { brief, button, h } from "../dom.js";
+import { brief, button, fitted, h, widthOf } from "../dom.js";
 import { short } from "../cdr.js";
 import { Tree } from "./tree.js";
 
 const COLUMNS = ["topic", "type", "rate", "bandwidth", "age", "publishers"];
 const ROWS = 12; // rows that are written in one frame
+const FIGURE = 50, PADDING = 12; // widths in pixels: of a column of figures, and beside a text
+const NARROW = 440; // width in pixels below which names and types need the place of some figures
 const TREE_RATE = 10; // Hz at which the latest message is read
 
 class Topics {
@@ -20,18 +22,23 @@ class Topics {
     this._build();
     this.offs = [app.store.on("change", () => { this.stale = true; }), app.store.on("statistics", () => { this.stale = true; })];
     this.stale = true;
-    if (options.topic) this._choose(options.topic);
+    if (options.topic) this._choose(options.topic, options.open);
   }
 
-  save() { return { filter: this.filter, sort: this.sort, down: this.down, topic: this.chosen?.topic.name }; }
+  /** Options: the topic whose message is shown, and what of it is unfolded, as paths or true for all of it. */
+  save() {
+    const { filter, sort, down, tree } = this, topic = this.chosen?.topic.name;
+    return { filter, sort, down, topic, open: topic && (tree.unfolds || [...tree.open]) };
+  }
 
   close() {
     for (const off of this.offs) off();
+    this.observer.disconnect();
     this.chosen?.close();
   }
 
   frame(now) {
-    if (this.stale && !(now - this.listed < 200)) {
+    if (this.stale && this.width && !(now - this.listed < 200)) {
       this.listed = now;
       this.stale = false;
       this._list();
@@ -49,13 +56,16 @@ class Topics {
     this.count = h("span", { class: "dim" });
     this.body = h("tbody");
     this.heads = COLUMNS.map((name) => h("th", { class: name }, button(words(`topics.${name}`), null, () => this._sort(name))));
-    const table = h("table", { class: "topics" }, h("thead", {}, h("tr", {}, ...this.heads)), this.body);
+    this.table = h("table", { class: "topics" }, h("thead", {}, h("tr", {}, ...this.heads)), this.body);
+    const scroll = h("div", { class: "scroll" }, this.table);
+    this.observer = new ResizeObserver(([{ contentRect }]) => { this.width = contentRect.width; this.stale = true; });
+    this.observer.observe(scroll);
     this.tree = new Tree(words, (topic, path) => this.app.emit("pick", topic, path));
-    this.tree.onchange = () => { this.seen = undefined; this.read = undefined; };
+    this.tree.onchange = () => { this.seen = undefined; this.read = undefined; this.app.remember(); };
     this.title = h("h3");
     this.hint = h("p", { class: "dim" });
-    this.detail = h("div", { class: "detail", hidden: true }, h("div", { class: "row" }, button("✕", words("topics.back"), () => this._choose(null)), this.title), this.hint, this.tree.element);
-    this.element.append(h("div", { class: "row" }, search, this.count), h("div", { class: "scroll" }, table), this.detail);
+    this.detail = h("div", { class: "detail", hidden: true }, h("div", { class: "row" }, button("✕", words("topics.back"), () => this._choose(null)), this.title, this.hint), this.tree.element);
+    this.element.append(h("div", { class: "row" }, search, this.count), scroll, this.detail);
   }
 
   _sort(name) {
@@ -72,6 +82,7 @@ class Topics {
     topics.sort((a, b) => sign * (key(a) < key(b) ? -1 : key(a) > key(b) ? 1 : 0));
     this.heads.forEach((head, i) => { head.ariaSort = COLUMNS[i] !== this.sort ? "none" : this.down ? "descending" : "ascending"; });
     this.count.textContent = topics.length ? this.app.words("topics.count", { count: topics.length }) : this.app.words("topics.none");
+    this._columns(topics);
     const present = new Set(topics.map(({ name }) => name));
     for (const [name, row] of this.rows) if (!present.has(name)) { row.remove(); this.rows.delete(name); }
     let before = null;
@@ -83,6 +94,19 @@ class Topics {
     this.waiting = topics;
   }
 
+  /** Share the width among the columns, so that names and types are whole where there is room. */
+  _columns(topics) {
+    const isBag = Boolean(this.app.connection.info?.robolink?.bag), figures = isBag ? 3 : 4;
+    const longest = (name) => Math.max(60, ...topics.map((topic) => widthOf(topic[name]))) + PADDING, name = longest("name"), type = longest("type");
+    const fits = (count) => name + type <= this.width - FIGURE * count, isNarrow = this.width < NARROW || (!fits(figures) && fits(2));
+    const room = this.width - FIGURE * (isNarrow ? 2 : figures);
+    this.table.classList.toggle("bag", isBag); // nobody publishes there
+    this.table.classList.toggle("narrow", isNarrow);
+    this.rooms = [Math.min(name, room - Math.min(type, Math.max(room - name, room * 0.45)))];
+    this.rooms.push(room - this.rooms[0]);
+    this.heads[0].style.width = `${this.rooms[0]}px`;
+  }
+
   /** Write the figures of some rows: all of two hundred at once would hold a frame up. */
   _refresh() {
     for (const topic of this.waiting.splice(0, ROWS)) this._row(topic);
@@ -92,26 +116,26 @@ class Topics {
     let row = this.rows.get(topic.name);
     if (!row) {
       row = h("tr", { "data-topic": topic.name, onclick: () => this._choose(topic.name) }, ...COLUMNS.map((name) => h("td", { class: name })));
-      row.cells[0].append(button(topic.name, null, () => {}));
+      row.cells[0].append(button("", topic.name, () => {}));
       row.texts = [];
       this.rows.set(topic.name, row);
     }
-    const told = topic.statistics ?? {}, type = short(topic.type);
-    const texts = [null, type, told.rate === undefined ? "" : told.rate.toFixed(1), brief(told.bandwidth), told.age === null || told.age === undefined ? "–" : `${told.age < 100 ? told.age.toFixed(1) : brief(told.age)} s`, brief(told.publishers)];
-    texts.forEach((text, i) => { if (text !== null && row.texts[i] !== text) row.cells[i].textContent = row.texts[i] = text; });
-    if (row.texts[0] !== topic.type) row.cells[1].title = row.texts[0] = topic.type;
+    const told = topic.statistics ?? {}, { type } = topic, [name, room] = this.rooms.map((each) => each - PADDING);
+    const texts = [fitted(topic.name, name), fitted(widthOf(type) <= room ? type : short(type), room), told.rate === undefined ? "" : told.rate.toFixed(1), brief(told.bandwidth), age(told.age), brief(told.publishers)];
+    texts.forEach((text, i) => { if (row.texts[i] !== text) (i ? row.cells[i] : row.cells[0].firstChild).textContent = row.texts[i] = text; });
+    row.cells[1].title = type;
     row.classList.toggle("chosen", this.chosen?.topic === topic);
     return row;
   }
 
-  _choose(name) {
+  /** Show the messages of a topic, with `open` what of them is unfolded; of the chosen one, or of null, none. */
+  _choose(name, open = []) {
     const before = this.chosen;
     before?.close();
     this.chosen = name && before?.topic.name !== name ? this.app.listen(name, { rate: TREE_RATE }) : null;
     this.detail.hidden = !this.chosen;
     this.title.textContent = name ?? "";
-    this.tree.element.replaceChildren();
-    this.tree.topic = null;
+    this.tree.forget(open);
     this.seen = undefined;
     this.stale = true;
     this.app.remember?.();
@@ -122,9 +146,15 @@ class Topics {
     if (view === this.seen) return;
     this.seen = view;
     const message = topic.latest;
-    this.hint.textContent = topic.error || (message ? short(topic.type) : this.app.words("topics.waiting"));
+    this.hint.textContent = topic.error || `${topic.type}${message ? "" : ` · ${this.app.words("topics.waiting")}`}`;
     if (message) this.tree.show(topic.name, message);
   }
+}
+
+/** Age in seconds as a text. */
+function age(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  return seconds < 100 ? `${seconds.toFixed(1)} s` : seconds < 6000 ? `${Math.round(seconds / 60)} min` : `${brief(seconds / 3600, 2)} h`;
 }
 
 export const panel = { id: "topics", create: (element, app, options) => new Topics(element, app, options) };

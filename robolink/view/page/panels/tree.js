@@ -36,18 +36,22 @@ export class Tree {
     this.words = words;
     this.onpick = onpick;
     this.element = h("div", { class: "tree", role: "tree" });
-    this.open = new Set([""]);
-    this.limits = new Map();
-    this.rows = new Map();
+    this.forget([]);
     this.element.addEventListener("keydown", (event) => this._key(event));
   }
 
+  /** Show nothing, and unfold these paths of what comes: true for all but arrays. */
+  forget(open) {
+    this.unfolds = open === true;
+    this.open = new Set(this.unfolds ? [] : open);
+    this.limits = new Map();
+    this.rows = new Map();
+    this.element.replaceChildren();
+  }
+
   show(topic, message) {
-    if (topic !== this.topic) {
-      this.rows.clear();
-      this.element.replaceChildren();
-      this.topic = topic;
-    }
+    this.topic = topic;
+    if (this.unfolds) this._unfold(message, "");
     const wanted = [];
     this._collect(wanted, message, "", 0);
     const present = new Set(wanted.map(({ path }) => path));
@@ -61,6 +65,15 @@ export class Tree {
       const row = this._row(each), place = before ? before.nextSibling : this.element.firstChild;
       if (row !== place) this.element.insertBefore(row, place);
       before = row;
+    }
+  }
+
+  _unfold(value, path) {
+    this.unfolds = false;
+    for (const [name, each] of Object.entries(value)) {
+      if (!isBranch(each) || isList(each)) continue;
+      this.open.add(`${path}${name}`);
+      this._unfold(each, `${path}${name}.`);
     }
   }
 
