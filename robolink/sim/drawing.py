@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
-from robolink.geometry.plane import Area, Pose, placed_on
+from robolink.geometry.plane import Pose, placed_on
 from robolink.sim.colours import colour_of, hex_of
 from robolink.sim.description import MapWalls, Obstacle, RobotDescription, Shape, Sign, WorldDescription
+from robolink.sim.looks import KINDS, extent, kind_of, obstacle_colour, robot_colour, wall_colour
 from robolink.sim.quantities import Point
 from robolink.sim.sensors import Bumper, Looking
 
@@ -26,22 +27,14 @@ if TYPE_CHECKING:
 
 FORMATS = (".png", ".svg", ".pdf")
 
-# Okabe and Ito's colours, which people who see few colours can tell apart.
-WALL, ROBOT, TOUCH, SIGN = "#222222", "#009E73", "#E69F00", "#C2185B"
-KINDS = {"fixed": "#A8A8A8", "can be pushed": "#E69F00", "moves by itself": "#56B4E9"}
-"""Colours of obstacles by kind."""
+INK, VIEW, TOUCH, SIGN = "#222222", "#009E73", "#E69F00", "#C2185B"
+"""Colours of outlines, tyres and names, of what a sensor sees or feels, and of signs."""
 
 _INCH = 100.0
 """Resolution of a picture, in pixels to an inch."""
 
 _NARROWEST = 2.5
 """Least size of a picture in both directions, in inches."""
-
-_LEAST_RADII = 10.0
-"""Least size of the drawn area in both directions, in radii of the largest robot."""
-
-_NOWHERE = ((0.0,), (0.0,))
-"""Place of an empty world: x and y."""
 
 _NAMED = 30
 """Most robots whose names are written beside them, and most tags."""
@@ -110,7 +103,7 @@ def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
         _draw_sign(axes, sign, origin, named=len(description.signs) <= _NAMED)
     for robot in description.robots:
         _draw_robot(axes, robot, named=len(description.robots) <= _NAMED)
-    area = _extent(description)
+    area = extent(description)
     axes.update_datalim([area[:2], area[2:]])
     axes.set_aspect("equal")
     axes.autoscale_view()
@@ -118,8 +111,8 @@ def draw_world(axes: Axes, description: WorldDescription) -> list[Patch]:
     axes.set_ylabel("y [m]")
     axes.set_axisbelow(True)
     axes.grid(color="#E5E5E5", linewidth=0.6)
-    kinds = {_kind(each) for each in description.obstacles if each.colour is None}
-    return [Patch(facecolor=KINDS[kind], edgecolor=WALL, label=kind) for kind in KINDS if kind in kinds]
+    kinds = {kind_of(each) for each in description.obstacles if each.colour is None}
+    return [Patch(facecolor=hex_of(KINDS[kind]), edgecolor=INK, label=kind) for kind in KINDS if kind in kinds]
 
 
 def _draw_floor(axes: Axes, description: WorldDescription) -> None:
@@ -165,42 +158,25 @@ def _draw_sign(axes: Axes, sign: Sign, origin: Pose, *, named: bool) -> None:
         text.set_path_effects([withStroke(linewidth=2, foreground="white")])
 
 
-def _colour(own: str | None, default: str) -> str:
-    """Return the colour of a part of the world, for matplotlib."""
-    return default if own is None else hex_of(colour_of(own))
-
-
 def _draw_walls(axes: Axes, description: WorldDescription) -> None:
     from matplotlib.collections import LineCollection
     from matplotlib.patheffects import withStroke
 
     for wall in description.walls:
         width = 1.0 if isinstance(wall, MapWalls) else 2.0
-        colour = _colour(wall.colour, WALL)
+        colour = hex_of(wall_colour(wall))
         lines = LineCollection(wall.segments(), colors=colour, linewidths=width, capstyle="round", zorder=3)
         if wall.colour is not None:  # a light one is seen on a light floor, too
-            lines.set_path_effects([withStroke(linewidth=width + 1.5, foreground=WALL)])
+            lines.set_path_effects([withStroke(linewidth=width + 1.5, foreground=INK)])
         axes.add_collection(lines, autolim=True)
-
-
-def _kind(obstacle: Obstacle) -> str:
-    if obstacle.path is not None:
-        return "moves by itself"
-    return "fixed" if obstacle.mass is None else "can be pushed"
 
 
 def _draw_obstacle(axes: Axes, obstacle: Obstacle) -> None:
     if obstacle.path is not None:
         points = [*obstacle.path, obstacle.path[0]] if obstacle.closed else obstacle.path
-        axes.plot(
-            *zip(*points, strict=True), linestyle=(0, (5, 4)), color=KINDS[_kind(obstacle)], linewidth=1.2, zorder=2
-        )
-    style = {
-        "facecolor": _colour(obstacle.colour, KINDS[_kind(obstacle)]),
-        "edgecolor": WALL,
-        "linewidth": 0.8,
-        "zorder": 4,
-    }
+        colour = hex_of(KINDS[kind_of(obstacle)])
+        axes.plot(*zip(*points, strict=True), linestyle=(0, (5, 4)), color=colour, linewidth=1.2, zorder=2)
+    style = {"facecolor": hex_of(obstacle_colour(obstacle)), "edgecolor": INK, "linewidth": 0.8, "zorder": 4}
     axes.add_patch(_outline(obstacle, obstacle.start.place, style))
 
 
@@ -208,11 +184,11 @@ def _draw_robot(axes: Axes, robot: RobotDescription, *, named: bool) -> None:
     for sensor in robot.sensors:
         if isinstance(sensor, Looking):
             _draw_view(axes, robot, sensor)
-    style = {"facecolor": _colour(robot.colour, ROBOT), "edgecolor": WALL, "linewidth": 0.8, "zorder": 6}
+    style = {"facecolor": hex_of(robot_colour(robot)), "edgecolor": INK, "linewidth": 0.8, "zorder": 6}
     parts = [_outline(robot.shape, robot.pose.place, style)]
     for wheel in robot.wheels:
         tyre = Shape(box=(2 * wheel.radius, max(wheel.radius / 2, 0.005)))
-        parts.append(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": WALL, "zorder": 7}))
+        parts.append(_outline(tyre, placed_on(robot.pose.place, wheel.at.place), {"facecolor": INK, "zorder": 7}))
     for part in parts:
         axes.add_patch(part)
     front = robot.shape.circle or max(x for x, _ in robot.shape.corners())
@@ -237,7 +213,7 @@ def _write_name(axes: Axes, name: str, parts: Sequence[Patch]) -> None:
         va="top",
         zorder=9,
         size=8,
-        color=WALL,
+        color=INK,
     )
     written.set_path_effects([withStroke(linewidth=2, foreground="white")])
 
@@ -249,7 +225,7 @@ def _draw_view(axes: Axes, robot: RobotDescription, sensor: Looking) -> None:
     reach, feels = robot.shape.outer_radius(), isinstance(sensor, Bumper)
     x, y, theta = placed_on(robot.pose.place, Pose() if sensor.mount is None else sensor.mount.place)
     radius = 1.15 * reach if feels else min(getattr(sensor, "range", (0.0, math.inf))[1], 1.5 * reach + 0.4)
-    first, color = math.degrees(theta) + sensor.right, TOUCH if feels else ROBOT
+    first, color = math.degrees(theta) + sensor.right, TOUCH if feels else VIEW
     axes.add_patch(Wedge((x, y), radius, first, first + sensor.fov, color=color, alpha=0.15, linewidth=0, zorder=1))
 
 
@@ -264,27 +240,6 @@ def _outline(shape: Shape, pose: Pose, style: dict[str, Any]) -> Patch:
 
 def _figure_size(description: WorldDescription, longer: float) -> Point:
     """Return a figure's width and height in inches: the world fills it, with room for labels."""
-    area = _extent(description)
+    area = extent(description)
     scale = longer / max(area.width, area.height)
     return max(area.width * scale, _NARROWEST), max(area.height * scale, _NARROWEST)
-
-
-def _extent(description: WorldDescription) -> Area:
-    """Return the bounding box of a world, so large that no robot fills it."""
-    points = [point for wall in description.walls for segment in wall.segments() for point in segment]
-    points += [(each.start.x, each.start.y) for each in description.obstacles]
-    points += [point for each in description.obstacles for point in each.path or ()]
-    points += [(each.pose.x, each.pose.y) for each in description.robots]
-    points += [(each.pose.x, each.pose.y) for each in description.signs]
-    least = _LEAST_RADII * max((each.shape.outer_radius() for each in description.robots), default=0.1)
-    (x_min, x_max), (y_min, y_max) = (
-        _widened(each, least) for each in (zip(*points, strict=True) if points else _NOWHERE)
-    )
-    return Area(x_min, y_min, x_max, y_max)
-
-
-def _widened(values: Sequence[float], least: float) -> tuple[float, float]:
-    """Return the least and the greatest of some values, moved apart until they are `least` from each other."""
-    low, high = min(values), max(values)
-    more = max(0.0, least - (high - low)) / 2
-    return low - more, high + more

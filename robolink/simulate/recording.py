@@ -27,6 +27,7 @@ from robolink.wire import NO_HASH, DataKey, parse_key, unpack_attachment
 if TYPE_CHECKING:
     from robolink.message import Message
     from robolink.node import Node
+    from robolink.world_node.shapes import Scenery
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Profile of the markers of a world, as its node has it."""
@@ -56,7 +57,8 @@ class SimulatedRecording:
         self._waiting: list[tuple[_Topic, int, bytes, bytes]] = []
         self._size = 0
         self._begin = now()
-        self._scenery: dict[str, _Scenery] = {}
+        self._sceneries: dict[str, Scenery] = {}
+        self._added: dict[str, _Added] = {}
         self._error: Exception | None = None
         self._closed = False
 
@@ -92,19 +94,21 @@ class SimulatedRecording:
             self._bag.write(topic.number, at, sender.timestamp, sender.sequence, data)
 
     def add_scenery(self) -> None:
-        """Add the markers of the simulated worlds: the walls once, the rest where it has changed."""
+        """Add the markers of the simulated worlds: floor and walls once, the rest where it has changed."""
         for node, simulation in worlds_of(self.nodes()):
-            from robolink.world_node.shapes import objects_of, walls_of
+            from robolink.world_node.shapes import Scenery
 
             name = node.get_fully_qualified_name()
-            if f"{name}/walls" not in self._scenery:
-                self._add(f"{name}/walls", walls_of(simulation), self._begin)
-            self._add(f"{name}/objects", objects_of(simulation), self._now())
+            if name not in self._sceneries:
+                scenery = self._sceneries[name] = Scenery(simulation.description)
+                self._add(f"{name}/floor", scenery.floor(), self._begin)
+                self._add(f"{name}/walls", scenery.walls(), self._begin)
+            self._add(f"{name}/objects", self._sceneries[name].objects(simulation), self._now())
 
     def _add(self, name: str, message: Message, at: int) -> None:
-        known = self._scenery.get(name)
+        known = self._added.get(name)
         if known is None:
-            known = self._scenery[name] = _Scenery(self._bag.add_topic(_scenery_topic(name, type(message))))
+            known = self._added[name] = _Added(self._bag.add_topic(_scenery_topic(name, type(message))))
         payload = encode(message)
         if payload != known.payload:
             known.payload, known.count = payload, known.count + 1
@@ -146,7 +150,7 @@ class _Topic:
         self.profiles: list[QoSProfile] = []
 
 
-class _Scenery:
+class _Added:
     """Topic of markers that nobody publishes: its number in the bag, its messages so far, and the last of them."""
 
     def __init__(self, number: int) -> None:

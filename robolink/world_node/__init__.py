@@ -3,7 +3,7 @@
 simulation = Simulation(node, description, epoch=0)  # the world, and the topics of its robots
 runner = Runner(node, simulation, rtf=1.0)           # makes its steps by the clock
 Services(node, simulation, runner)                   # ~/reset, ~/pause, ~/spawn ...
-Shapes(node, simulation, runner.steady)              # ~/walls, ~/objects: markers for viewers
+Shapes(node, simulation, runner.steady)              # ~/floor, ~/walls, ~/objects: markers for viewers
 """
 
 from robolink.world_node.runner import Runner, diagnostics, listed, report

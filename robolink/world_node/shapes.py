@@ -1,36 +1,57 @@
-"""Markers of a simulated world for viewers: walls and obstacles, what moves, and the outlines of the robots.
+"""Markers of a simulated world for viewers: its floor, walls and obstacles, what moves, signs, and the robots.
 
-They are visualization_msgs/MarkerArray, latched: `~/walls` is what stands, `~/objects` what moves, is pushed or drives.
+They are visualization_msgs/MarkerArray, latched, in the frame `map` unless something else is said. Each message begins
+with DELETEALL: it is all of its topic.
+
+| topic | ns | what | type |
+|---|---|---|---|
+| `~/floor` | `floor` | 0: its rectangle, if it has a colour, a picture or paint; 1: its picture | TRIANGLE_LIST |
+| | `paint` | each line or area that is painted; later ones lie higher | TRIANGLE_LIST |
+| `~/walls` | `walls` | walls of one colour and height, at their upper edge | LINE_LIST |
+| | `wall_faces` | the same ones, upright: nothing of them is seen from above | TRIANGLE_LIST |
+| | `obstacles` | each fixed obstacle | CYLINDER, CUBE, TRIANGLE_LIST |
+| `~/objects` | `obstacles` | each that moves or can be pushed | CYLINDER, CUBE, TRIANGLE_LIST |
+| | `robots` | each robot, in its own frame, frame_locked | CYLINDER, CUBE, TRIANGLE_LIST |
+
+Colours are those of the world file, else those of `robolink.sim.looks`. The floor lies a little below z = 0, where
+viewers draw grids and maps: what lies in one plane flickers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 from robolink.clock import Clock
-from robolink.geometry.plane import Pose
-from robolink.interfaces.geometry_msgs.msg import Point, Vector3
-from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
-from robolink.interfaces.std_msgs.msg import ColorRGBA, Header
+from robolink.geometry.plane import Area, Pose
 from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
 from robolink.node import Node
 from robolink.sim import World
-from robolink.sim.description import Obstacle, Shape
-from robolink.world_node.messages import facing
-from robolink.world_node.robot_topics import MAP
+from robolink.sim.colours import Colour, colour_of
+from robolink.sim.description import Wall, WorldDescription
+from robolink.sim.looks import (
+    FLOOR,
+    OBSTACLE_HEIGHT,
+    ROBOT_HEIGHT,
+    WALL_HEIGHT,
+    extent,
+    moves,
+    obstacle_colour,
+    robot_colour,
+    wall_colour,
+)
+from robolink.sim.scene import strokes, triangles
+from robolink.world_node import markers
 from robolink.world_node.simulation import LATCHED, Simulation
 
 PERIOD = 0.1
 """Interval at which moving obstacles are published, in seconds."""
 
-HEIGHT, LINE = 0.5, 0.03
-"""Height of solids and width of walls, in metres."""
+LOWEST, HIGHEST, STEP = -0.02, -0.002, 0.001
+"""Heights of the floor and of the last paint on it, and the most between two layers, in metres."""
 
-WALL = ColorRGBA(r=0.5, g=0.53, b=0.58, a=1.0)
-FIXED = ColorRGBA(r=0.6, g=0.62, b=0.66, a=0.8)
-PUSHED = ColorRGBA(r=0.9, g=0.62, b=0.0, a=0.8)
-MOVING = ColorRGBA(r=0.34, g=0.71, b=0.91, a=0.8)
-ROBOT = ColorRGBA(r=0.0, g=0.62, b=0.45, a=0.7)
+MOST_FACES = 2_000
+"""Most walls that are drawn as faces too: a map may have a hundred thousand."""
 
 
 class Shapes:
@@ -43,11 +64,11 @@ class Shapes:
     """
 
     def __init__(self, node: Node, simulation: Simulation, clock: Clock) -> None:
-        self._simulation = simulation
+        self._simulation, self._scenery = simulation, Scenery(simulation.description)
         self._objects = node.create_publisher(MarkerArray, "~/objects", LATCHED)
         self._shown: object = None
-        walls = node.create_publisher(MarkerArray, "~/walls", LATCHED)
-        walls.publish(walls_of(simulation))
+        node.create_publisher(MarkerArray, "~/floor", LATCHED).publish(self._scenery.floor())
+        node.create_publisher(MarkerArray, "~/walls", LATCHED).publish(self._scenery.walls())
         self.publish()
         node.create_timer(PERIOD, self.publish, clock=clock)
 
@@ -57,18 +78,35 @@ class Shapes:
         if now == self._shown:
             return
         self._shown = now
-        self._objects.publish(objects_of(self._simulation))
+        self._objects.publish(self._scenery.objects(self._simulation))
 
 
-def walls_of(simulation: Simulation) -> MarkerArray:
-    """Return the markers of things that stand in a simulated world."""
-    return MarkerArray(markers=list(standing(simulation.world)))
+class Scenery:
+    """All markers of a world.
+
+    Args:
+        description: The world.
+    """
+
+    def __init__(self, description: WorldDescription) -> None:
+        self.description = description
+
+    def floor(self) -> MarkerArray:
+        """Return the markers of the floor and of what is painted on it."""
+        return _all_of([*_ground(self.description), *_paint(self.description)])
+
+    def walls(self) -> MarkerArray:
+        """Return the markers of things that stand."""
+        return _all_of([*_walls(self.description.walls), *_standing(self.description)])
+
+    def objects(self, simulation: Simulation) -> MarkerArray:
+        """Return the markers of things that move, are pushed or drive, where they are now."""
+        world = simulation.world
+        return _all_of([*_moving(world), *_robots(world, _frames(simulation))])
 
 
-def objects_of(simulation: Simulation) -> MarkerArray:
-    """Return the markers of things that move, are pushed or drive in a world, which replace those of before."""
-    world = simulation.world
-    return MarkerArray(markers=[Marker(action=Marker.DELETEALL), *moving(world), *outlines(world, _frames(simulation))])
+def _all_of(found: Sequence[Marker]) -> MarkerArray:
+    return MarkerArray(markers=[Marker(action=Marker.DELETEALL), *found])
 
 
 def _frames(simulation: Simulation) -> dict[str, str]:
@@ -76,52 +114,63 @@ def _frames(simulation: Simulation) -> dict[str, str]:
     return {name: topics.base_frame for name, topics in simulation.robots.items()}
 
 
-def standing(world: World) -> Iterator[Marker]:
-    """Yield the markers of walls and fixed obstacles."""
-    ends = [end for wall in world.description.walls for segment in wall.segments() for end in segment]
-    if ends:
-        yield Marker(
-            header=Header(frame_id=MAP),
-            ns="walls",
-            type=Marker.LINE_LIST,
-            scale=Vector3(x=LINE),
-            color=WALL,
-            points=[Point(x=x, y=y) for x, y in ends],
-        )
-    for index, obstacle in enumerate(world.description.obstacles):
-        if not _moves(obstacle):
-            yield _solid(obstacle, "obstacles", index, FIXED, obstacle.start.place)
+def _ground(description: WorldDescription) -> Iterator[Marker]:
+    settings = description.world.floor
+    if settings.colour is None and settings.image is None and not description.paint:
+        return
+    colour = FLOOR if settings.colour is None else colour_of(settings.colour)
+    left, low, right, high = ground_area(description)
+    corners = [(left, low), (right, low), (right, high), (left, high)]
+    yield markers.flat("floor", 0, triangles.of_polygon(corners), LOWEST, colour)
 
 
-def moving(world: World) -> Iterator[Marker]:
-    """Yield the markers of obstacles that move by themselves or are pushed, where they are now."""
-    for index, (obstacle, pose) in enumerate(zip(world.description.obstacles, world.obstacle_poses(), strict=True)):
-        if _moves(obstacle):
-            yield _solid(obstacle, "obstacles", index, PUSHED if obstacle.path is None else MOVING, pose)
+def ground_area(description: WorldDescription) -> Area:
+    """Return the area of the floor in metres: the world's size, or all that stands in it, and what is painted."""
+    size = description.world.size
+    area = extent(description) if size is None else Area(0.0, 0.0, *size)
+    for each in description.paint:
+        box = strokes.box_of(each)
+        area = area.grown(box.x_min, box.y_min).grown(box.x_max, box.y_max)
+    return area
 
 
-def outlines(world: World, frames: dict[str, str]) -> Iterator[Marker]:
-    """Yield the markers of the robots, each in its own frame, with which it moves."""
+def _paint(description: WorldDescription) -> Iterator[Marker]:
+    layers = len(description.paint)
+    step = min(STEP, (HIGHEST - LOWEST) / (layers + 1))
+    for index, each in enumerate(description.paint):
+        z = LOWEST + step * (index + 2)
+        yield markers.flat("paint", index, triangles.of_paint(each), z, colour_of(each.colour))
+
+
+def _walls(walls: Sequence[Wall]) -> Iterator[Marker]:
+    def look(wall: Wall) -> tuple[Colour, float]:
+        return wall_colour(wall), wall.height or WALL_HEIGHT
+
+    for index, ((colour, height), alike) in enumerate(groupby(sorted(walls, key=look), look)):
+        segments = [segment for wall in alike for segment in wall.segments()]
+        yield markers.lines("walls", index, segments, height, colour)
+        if len(segments) <= MOST_FACES:
+            yield markers.upright("wall_faces", index, segments, height, colour)
+
+
+def _standing(description: WorldDescription) -> Iterator[Marker]:
+    for index, each in enumerate(description.obstacles):
+        if not moves(each):
+            height = each.height or OBSTACLE_HEIGHT
+            yield markers.solid("obstacles", index, each, height, each.start.place, obstacle_colour(each))
+
+
+def _moving(world: World) -> Iterator[Marker]:
+    for index, (each, pose) in enumerate(zip(world.description.obstacles, world.obstacle_poses(), strict=True)):
+        if moves(each):
+            height = each.height or OBSTACLE_HEIGHT
+            yield markers.solid("obstacles", index, each, height, pose, obstacle_colour(each))
+
+
+def _robots(world: World, frames: dict[str, str]) -> Iterator[Marker]:
     for index, (name, frame) in enumerate(frames.items()):
-        marker = _solid(world.robots[name].description.shape, "robots", index, ROBOT, Pose())
+        robot = world.robots[name].description
+        height = robot.height or ROBOT_HEIGHT
+        marker = markers.solid("robots", index, robot.shape, height, Pose(), robot_colour(robot))
         marker.header.frame_id, marker.frame_locked = frame, True
         yield marker
-
-
-def _moves(obstacle: Obstacle) -> bool:
-    return obstacle.path is not None or obstacle.mass is not None
-
-
-def _solid(shape: Shape, group: str, index: int, color: ColorRGBA, pose: Pose) -> Marker:
-    """Return the marker of a shape: a cylinder, a box, or a polygon's outline."""
-    there = PoseMessage(position=Point(x=pose.x, y=pose.y), orientation=facing(pose.theta))
-    marker = Marker(header=Header(frame_id=MAP), ns=group, id=index, color=color, pose=there)
-    if shape.circle is not None:
-        marker.type, marker.scale = Marker.CYLINDER, Vector3(x=2 * shape.circle, y=2 * shape.circle, z=HEIGHT)
-    elif shape.box is not None:
-        marker.type, marker.scale = Marker.CUBE, Vector3(x=shape.box[0], y=shape.box[1], z=HEIGHT)
-    else:
-        corners = shape.corners()
-        marker.type, marker.scale = Marker.LINE_STRIP, Vector3(x=LINE)
-        marker.points = [Point(x=x, y=y) for x, y in [*corners, corners[0]]]
-    return marker

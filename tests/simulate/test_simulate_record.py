@@ -79,8 +79,8 @@ def test_the_walls_of_a_simulated_world_are_there_for_viewers(folder: Path, tmp_
         simulated(folder, "lab", record=path)
         bags.append((path / "bag_0.mcap").read_bytes())
         with open_bag(path) as bag:
-            walls, objects = (list(bag.messages([f"/world/{name}"])) for name in ("walls", "objects"))
-            assert len(walls) == 1, "they stand"
+            floor, walls, objects = (list(bag.messages([f"/world/{name}"])) for name in ("floor", "walls", "objects"))
+            assert (len(floor), len(walls)) == (1, 1), "they stand"
             assert walls[0].log_time == bag.start_time
             assert "walls" in {each.ns for each in decode(MarkerArray, bytes(walls[0].data)).markers}
             frames = {each.header.frame_id for each in decode(MarkerArray, bytes(objects[-1].data)).markers if each.ns}

@@ -1,7 +1,8 @@
-"""The markers of a simulated world: what stands, what moves, and the robots' outlines in their own frames."""
+"""The markers of a simulated world: floor, what stands, what moves, and the robots in their own frames."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,22 +13,30 @@ from robolink.clock_type import ClockType
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
 from robolink.sim import load_world
+from robolink.sim.colours import hex_of
+from robolink.sim.description import WorldDescription
+from robolink.sim.drawing import draw_world
 from robolink.world_node import Shapes, Simulation
+from robolink.world_node.shapes import Scenery
 from robolink.world_node.simulation import LATCHED
 from tests.support.spins import spin_until
 
+WORLDS = sorted((Path(__file__).parents[2] / "configs" / "worlds").glob("*.yaml"))
+
 WORLD = """
-walls: [{polyline: [[0, 0], [4, 0], [4, 3]], closed: true}]
+world: {size: [4, 3], floor: {colour: '#112233'}}
+walls: [{polyline: [[0, 0], [4, 0], [4, 3]], closed: true}, {polyline: [[1, 0], [1, 1]], colour: red, height: 0.4}]
 obstacles:
-  - {circle: 0.2, pose: [1, 1]}
+  - {circle: 0.2, pose: [1, 2], colour: blue, height: 0.8}
   - {box: [0.4, 0.2], mass: 1.0, pose: [2, 2, 0.5]}
   - {polygon: [[0, 0], [0.2, 0], [0, 0.2]], path: [[3, 1], [3, 2]], speed: 1.0}
-robots: [{name: bob, pose: [2, 1]}]
+paint: [{line: [[0.5, 0.5], [3.5, 0.5]], dashes: [0.5, 0.5]}, {circle: 0.2, pose: [2, 1.5], colour: yellow}]
+robots: [{name: bob, pose: [2, 1], height: 0.3}]
 """
 
 
 @pytest.fixture
-def heard(virtual: Context, executor: SingleThreadedExecutor, tmp_path: Any) -> dict[str, Any]:
+def heard(virtual: Context, executor: SingleThreadedExecutor, tmp_path: Path) -> dict[str, Any]:
     """A world's markers, as another node hears them."""
     file = tmp_path / "world.yaml"
     file.write_text(WORLD, encoding="utf-8")
@@ -40,38 +49,79 @@ def heard(virtual: Context, executor: SingleThreadedExecutor, tmp_path: Any) -> 
     def take(name: str, message: MarkerArray) -> None:
         found[name], found["count"] = message.markers, found["count"] + 1
 
-    for name in ("walls", "objects"):
+    for name in ("floor", "walls", "objects"):
         ear.create_subscription(MarkerArray, f"/world/{name}", lambda message, name=name: take(name, message), LATCHED)
     executor.add_node(node)
     executor.add_node(ear)
-    spin_until(executor, lambda: "walls" in found and "objects" in found)
+    spin_until(executor, lambda: {"floor", "walls", "objects"} <= set(found))
     found["executor"] = executor
     return found
 
 
+def of(markers: list[Marker], group: str) -> list[Marker]:
+    """The markers of a namespace; the message begins with the deletion of all that was there."""
+    assert markers[0].action == Marker.DELETEALL
+    return [each for each in markers[1:] if each.ns == group]
+
+
+def colour(marker: Marker) -> str:
+    """The colour of a marker as '#rrggbb'."""
+    red, green, blue = (round(255 * each) for each in (marker.color.r, marker.color.g, marker.color.b))
+    assert marker.color.a == 1.0
+    return hex_of((red, green, blue))
+
+
+def test_the_floor_has_its_colour_and_its_paint_lies_in_layers_below_the_plane_of_grids(heard: dict[str, Any]) -> None:
+    (ground,), (line, spot) = of(heard["floor"], "floor"), of(heard["floor"], "paint")
+    assert (colour(ground), colour(line), colour(spot)) == ("#112233", "#ffffff", "#ffff00")
+    assert box(ground) == (0, 0, 4, 3)
+    heights = [each.pose.position.z for each in (ground, line, spot)]
+    assert heights == sorted(set(heights))
+    assert heights[-1] < 0.0, "a viewer's grid is at 0"
+
+
+def box(marker: Marker) -> tuple[float, float, float, float]:
+    """The area of a marker's points."""
+    xs, ys = [each.x for each in marker.points], [each.y for each in marker.points]
+    return min(xs), min(ys), max(xs), max(ys)
+
+
 def test_walls_and_what_stands_are_told_once(heard: dict[str, Any]) -> None:
-    lines, stone = heard["walls"]
-    assert (lines.ns, lines.type, len(lines.points)) == ("walls", Marker.LINE_LIST, 6)
-    assert (stone.type, stone.scale.x, stone.pose.position.x) == (Marker.CYLINDER, 0.4, 1.0)
-    assert all(each.header.frame_id == "map" for each in heard["walls"])
+    low, high = of(heard["walls"], "walls")
+    assert [(each.type, len(each.points)) for each in (low, high)] == [(Marker.LINE_LIST, 6), (Marker.LINE_LIST, 2)]
+    assert (colour(low), colour(high), high.points[0].z) == ("#647084", "#ff0000", 0.4)
+    faces = of(heard["walls"], "wall_faces")
+    assert [max(point.z for point in each.points) for each in faces] == [1.0, 0.4]
+    (stone,) = of(heard["walls"], "obstacles")
+    assert (stone.type, stone.scale.x, stone.pose.position.x, colour(stone)) == (Marker.CYLINDER, 0.4, 1.0, "#0000ff")
+    assert (stone.scale.z, stone.pose.position.z) == (0.8, 0.4), "it stands on the floor"
+    assert all(each.header.frame_id == "map" for each in heard["walls"][1:])
 
 
 def test_what_moves_is_told_where_it_is(heard: dict[str, Any]) -> None:
-    _, pushed, mover, _ = heard["objects"]
-    assert (pushed.type, pushed.scale.x, mover.type) == (Marker.CUBE, 0.4, Marker.LINE_STRIP)
+    pushed, mover = of(heard["objects"], "obstacles")
+    assert (pushed.type, pushed.scale.x, mover.type) == (Marker.CUBE, 0.4, Marker.TRIANGLE_LIST)
     for _ in range(50):
         heard["simulation"].step()
     before = heard["count"]
     spin_until(heard["executor"], lambda: heard["count"] > before)
-    assert heard["objects"][2].pose.position.y == pytest.approx(1.5, abs=0.05)
+    assert of(heard["objects"], "obstacles")[1].pose.position.y == pytest.approx(1.5, abs=0.05)
 
 
 def test_a_robot_is_drawn_in_its_own_frame(heard: dict[str, Any]) -> None:
-    robot = heard["objects"][-1]
-    assert (robot.ns, robot.header.frame_id, robot.frame_locked) == ("robots", "base_link", True)
+    (robot,) = of(heard["objects"], "robots")
+    assert (robot.header.frame_id, robot.frame_locked, robot.scale.z) == ("base_link", True, 0.3)
     heard["simulation"].delete("bob")
-    spin_until(heard["executor"], lambda: heard["objects"][-1].ns != "robots")
-    assert heard["objects"][0].action == Marker.DELETEALL
+    spin_until(heard["executor"], lambda: not of(heard["objects"], "robots"))
+
+
+def test_a_reset_shows_everything_where_it_was(heard: dict[str, Any]) -> None:
+    begin = heard["objects"]
+    for _ in range(50):
+        heard["simulation"].step()
+    spin_until(heard["executor"], lambda: heard["objects"] != begin)
+    heard["simulation"].reset()
+    spin_until(heard["executor"], lambda: heard["objects"] == begin)
 
 
 def test_nothing_is_told_again_while_nothing_moves(heard: dict[str, Any]) -> None:
@@ -79,3 +129,33 @@ def test_nothing_is_told_again_while_nothing_moves(heard: dict[str, Any]) -> Non
     heard["shapes"].publish()
     spin_until(heard["executor"], lambda: heard["executor"].context.time.steady() > 1_000_000_000)
     assert heard["count"] == before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", WORLDS, ids=lambda path: path.stem)
+def test_colours_are_those_of_world_draw(path: Path) -> None:
+    description = load_world(path)
+    scenery = Scenery(description)
+    drawn = drawn_colours(description)
+    for markers, groups in ((scenery.floor(), ("floor", "paint")), (scenery.walls(), ("walls", "obstacles"))):
+        for each in markers.markers:
+            if each.ns in groups:
+                assert colour(each) in drawn, (each.ns, colour(each))
+
+
+def drawn_colours(description: WorldDescription) -> set[str]:
+    """The colours in the picture of a world by matplotlib."""
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import numpy as np
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 8), dpi=100)
+    figure.add_axes((0, 0, 1, 1))
+    draw_world(figure.axes[0], description)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3].reshape(-1, 3)
+    return {hex_of((int(red), int(green), int(blue))) for red, green, blue in np.unique(pixels, axis=0)}

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from robolink.sim.colours import Colour, colour_of
 from robolink.sim.description import FloorSettings, Paint
+from robolink.sim.looks import FLOOR
 from robolink.sim.physics.convex import convex_parts
 from robolink.sim.quantities import Point
 from robolink.sim.scene.solids import Floor, Picture, placed_corners
@@ -127,9 +128,6 @@ def _pieces(start: Point, end: Point, half: float) -> Iterator[tuple[float, floa
         x2, y2 = start[0] + dx * (index + 1) / count, start[1] + dy * (index + 1) / count
         yield min(x1, x2) - reach, min(y1, y2) - reach, max(x1, x2) + reach, max(y1, y2) + reach
 
-
-FLOOR: Colour = (150, 145, 140)
-"""Colour of a floor that has none."""
 
 _SMOOTH = 20.0
 """Part of a pixel that an arc may be off."""

@@ -13,8 +13,18 @@ from typing import TypeAlias
 import msgspec
 
 from robolink.geometry import plane
-from robolink.sim.colours import Colour, colour_of
+from robolink.sim.colours import Colour
 from robolink.sim.description import Obstacle, RobotDescription, Sign, Wall, WorldDescription
+from robolink.sim.looks import (
+    OBSTACLE_HEIGHT,
+    ROBOT_HEIGHT,
+    WALL_FACE,
+    WALL_HEIGHT,
+    moves,
+    obstacle_colour,
+    robot_colour,
+    wall_colour,
+)
 from robolink.sim.quantities import Pose
 from robolink.sim.scene.floor import painted_floor
 from robolink.sim.scene.pictures import cached_picture
@@ -22,15 +32,7 @@ from robolink.sim.scene.signs import sign_surfaces
 from robolink.sim.scene.solids import HERE, Picture, Scenery, Surfaces, solid, upright
 
 SKY: Colour = (190, 205, 225)
-WALL: Colour = (200, 195, 185)
-FIXED: Colour = (168, 168, 168)
-PUSHABLE: Colour = (230, 159, 0)
-MOVING: Colour = (86, 180, 233)
-ROBOT: Colour = (0, 158, 115)
-"""Colours where a world file has none; those of obstacles and robots are those of `robolink world draw`."""
-
-WALL_HEIGHT, OBSTACLE_HEIGHT, ROBOT_HEIGHT = 1.0, 0.5, 0.2
-"""Heights in metres where a world file has none."""
+"""Colour where nothing is."""
 
 GROUND_CLEARANCE = 0.02
 """Height of a robot's underside above the floor, in metres; of a flatter robot it is half its height."""
@@ -50,7 +52,7 @@ def scenery(description: WorldDescription) -> Scenery:
         ValueError: for a colour or a tag that is none, which `load_world` refuses.
     """
     read = cache(cached_picture)
-    fixed = [each for each in description.obstacles if not _moves(each)]
+    fixed = [each for each in description.obstacles if not moves(each)]
     standing = _joined([_walls(description.walls), *(_obstacle(each, each.start.place) for each in fixed)])
     signs = [sign_surfaces(each, read, standing) for each in description.signs]
     signs += [sign_surfaces(_placed(sign, each.start), read) for each in fixed for sign in each.signs]
@@ -62,7 +64,7 @@ def scenery(description: WorldDescription) -> Scenery:
         {
             index: _with_signs(_obstacle(each, HERE), each.signs, read)
             for index, each in enumerate(description.obstacles)
-            if _moves(each)
+            if moves(each)
         },
         {each.name: _robot(each, read) for each in description.robots},
     )
@@ -73,32 +75,9 @@ def robot_surfaces(robot: RobotDescription) -> Surfaces:
     return _robot(robot, cached_picture)
 
 
-def wall_colour(wall: Wall) -> Colour:
-    """Return the colour of a wall."""
-    return WALL if wall.colour is None else colour_of(wall.colour)
-
-
-def obstacle_colour(obstacle: Obstacle) -> Colour:
-    """Return the colour of an obstacle; one that has none is coloured by its kind."""
-    if obstacle.colour is not None:
-        return colour_of(obstacle.colour)
-    if obstacle.path is not None:
-        return MOVING
-    return FIXED if obstacle.mass is None else PUSHABLE
-
-
-def robot_colour(robot: RobotDescription) -> Colour:
-    """Return the colour of a robot."""
-    return ROBOT if robot.colour is None else colour_of(robot.colour)
-
-
-def _moves(obstacle: Obstacle) -> bool:
-    return obstacle.path is not None or obstacle.mass is not None
-
-
 def _walls(walls: Sequence[Wall]) -> Surfaces:
     faces = (
-        upright(start, end, 0.0, wall.height or WALL_HEIGHT, wall_colour(wall))
+        upright(start, end, 0.0, wall.height or WALL_HEIGHT, wall_colour(wall, WALL_FACE))
         for wall in walls
         for start, end in wall.segments()
     )

@@ -11,8 +11,9 @@ import pytest
 
 from robolink.sim.colours import colour_of
 from robolink.sim.description import FloorSettings, Paint
+from robolink.sim.looks import FLOOR
 from robolink.sim.quantities import Pose
-from robolink.sim.scene.floor import FLOOR, painted_floor
+from robolink.sim.scene.floor import painted_floor
 from robolink.sim.scene.solids import Floor
 from robolink.sim.scene.strokes import too_much
 

@@ -9,8 +9,9 @@ import pytest
 
 from robolink.sim import load_world
 from robolink.sim.description import Obstacle, RobotDescription, Shape, Wall, WorldDescription
+from robolink.sim.looks import OBSTACLE_HEIGHT, WALL_HEIGHT
 from robolink.sim.quantities import Pose
-from robolink.sim.scene.scenery import OBSTACLE_HEIGHT, WALL_HEIGHT, robot_surfaces, scenery
+from robolink.sim.scene.scenery import robot_surfaces, scenery
 from robolink.sim.scene.solids import Face
 
 WORLDS = Path(__file__).parents[3] / "configs" / "worlds"
