@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import robolink
 from robolink import Node, Parameter, RobolinkError
+from robolink.control.stop_lock import TOPIC, StopLock
 from robolink.exceptions import ExternalShutdownException
 from robolink.interfaces.geometry_msgs.msg import (
     Point,
@@ -157,6 +158,7 @@ class Walker(Node):
         self.create_subscription(Twist, "cmd_vel", self.on_cmd_vel, 10)
         self.timer = self.create_timer(duration.value, self.on_timer)
         self.add_post_set_parameters_callback(self.on_parameters)
+        self.stop_lock = StopLock(self, self.on_stop_lock)
         self.publish()
         if autostart.value:
             self.start()
@@ -178,6 +180,15 @@ class Walker(Node):
         self.velocity_until = 0
         return response
 
+    def on_stop_lock(self, held: bool) -> None:
+        """Stand while STOP holds; the rest of a route is walked when it is released."""
+        self.velocity_until = 0
+        self.timer.reset()
+        if held:
+            self.get_logger().warning(f"STOP holds ({TOPIC}): standing until it is released")
+        else:
+            self.get_logger().info(f"STOP is released ({TOPIC}): {self.to_go()} to go")
+
     def start(self) -> str:
         """Begin the route; return a message. The first step ends when it has had its time."""
         legs = parse_route(self.get_parameter("route").value)
@@ -196,6 +207,8 @@ class Walker(Node):
         if not all(map(math.isfinite, (velocity.linear.x, velocity.linear.y, velocity.angular.z))):
             self.get_logger().warning("ignored a cmd_vel that is not finite", once=True)
             return
+        if self.stop_lock.held:
+            return
         if self.ahead:
             self.get_logger().warning("cmd_vel is ignored on a route: stop_walk ends it", throttle_duration_sec=5.0)
             return
@@ -209,7 +222,9 @@ class Walker(Node):
         return asks and self.get_clock().now().nanoseconds < self.velocity_until
 
     def on_timer(self) -> None:
-        """Take the next step, if there is one to take."""
+        """Take the next step, if there is one to take and STOP does not hold."""
+        if self.stop_lock.held:
+            return
         length, duration = (self.get_parameter(name).value for name in ("step_length", "step_duration"))
         if self.ahead:
             self.walk.take_step(self.ahead.popleft(), length)

@@ -114,6 +114,11 @@ class Publisher(Destroyable, Generic[MsgT]):
         return self._endpoint.count_others()
 
     @property
+    def gid(self) -> bytes:
+        """Global id of the publisher, 16 bytes, as in `robolink topic info -v`."""
+        return self._endpoint.gid
+
+    @property
     def topic_name(self) -> str:
         """Fully qualified name of the topic."""
         return self._topic_name

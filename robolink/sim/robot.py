@@ -105,6 +105,21 @@ class Robot:
         self._driver.turn_wheels(speeds)
         self._parts.fleet.take_targets(self._member)
 
+    @property
+    def held(self) -> bool:
+        """True while the robot obeys no command: from `hold` to `release`."""
+        return self._driver.held
+
+    def hold(self) -> None:
+        """Brake as hard as the wheels grip the floor, about 0.8 g, and obey no command until `release`."""
+        self._parts.fleet.take_limits()
+        self._driver.hold()
+
+    def release(self) -> None:
+        """Obey commands again; the robot stands until the next one."""
+        self._parts.fleet.take_limits()
+        self._driver.release()
+
     def teleport(self, pose: Pose) -> None:
         """Put the robot elsewhere at once, at rest; odometry does not notice, and a command goes on.
 

@@ -75,6 +75,12 @@ class RobotCommands:
             if not self._steps_left:
                 self.robot.turn_wheels(dict.fromkeys(self.motors, 0.0))
 
+    def senders(self) -> set[str]:
+        """Return the full names of the nodes that publish commands."""
+        topics = [each.topic_name for each in (self._cmd_vel, self._joint_command) if each is not None]
+        ends = (end for topic in topics for end in self._node.get_publishers_info_by_topic(topic))
+        return {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in ends}
+
     def close(self) -> None:
         """Destroy the subscriptions."""
         self._node.destroy_subscription(self._cmd_vel)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from robolink.control.stop_lock import TOPIC, StopLock
 from robolink.exceptions import NotFoundError
 from robolink.interfaces.rosgraph_msgs.msg import Clock
 from robolink.interfaces.tf2_msgs.msg import TFMessage
@@ -17,6 +18,9 @@ from robolink.world_node.camera_topics import CameraTopics, Compression, Darkroo
 from robolink.world_node.messages import time_message
 from robolink.world_node.prepared import Stamp, transforms_payload
 from robolink.world_node.robot_topics import RobotCommands, RobotTopics
+
+SHOWN = 5
+"""Most nodes whose commands are ignored that are named."""
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -63,7 +67,10 @@ class Simulation:
         self._tf_static = node.create_publisher(TFMessage, "/tf_static", LATCHED)
         # Also when others are spawned: topics must not change their names while somebody listens.
         self._only = description.robots[0].name if len(description.robots) == 1 else None
+        self.stopped = False
+        """True while STOP holds all robots."""
         self._open_topics()
+        self._stop = StopLock(node, self._on_stop)
 
     @property
     def now(self) -> int:
@@ -165,7 +172,31 @@ class Simulation:
         self.robots = {name: unchanged.get(name) or self._topics(robot) for name, robot in robots.items()}
         self._state_steps = math.gcd(*(topics.state_steps for topics in self.robots.values())) or 1
         self._wheeled = [topics.commands for topics in self.robots.values() if topics.commands.motors]
+        self._hold_robots()
         self._publish_static()
+
+    def _on_stop(self, held: bool) -> None:
+        self.stopped = held
+        self._hold_robots()
+        logger = self._node.get_logger()
+        if held:
+            logger.warning(f"STOP holds ({TOPIC}): {self._ignored()} until it is released")
+        else:
+            logger.info(f"STOP is released ({TOPIC}): commands are obeyed again")
+
+    def _hold_robots(self) -> None:
+        for robot in self.world.robots.values():
+            if self.stopped and not robot.held:
+                robot.hold()
+            elif robot.held and not self.stopped:
+                robot.release()
+
+    def _ignored(self) -> str:
+        """Return in words which robots stand, and whose commands are ignored."""
+        who = sorted({name for topics in self.robots.values() for name in topics.commands.senders()})
+        stand = "every robot stands" if len(self.robots) != 1 else f"{next(iter(self.robots))} stands"
+        more = f" and {len(who) - SHOWN} more" if len(who) > SHOWN else ""
+        return f"{stand}, and commands{' of ' * bool(who)}{', '.join(who[:SHOWN])}{more} are ignored"
 
     def _topics(self, robot: Robot) -> RobotTopics:
         prefix = "" if robot.name == self._only else f"{robot.name}/"

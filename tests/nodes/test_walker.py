@@ -10,8 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink import Parameter
+from robolink.control.stop_lock import QOS
 from robolink.exceptions import InvalidParameterValueException
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.std_msgs.msg import Bool
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.testing import System
 from tests.support.nodefiles import load_node_file
@@ -181,6 +183,35 @@ def test_on_a_route_cmd_vel_does_not_count(system: System) -> None:
     system.run(4.0)
     assert node.walk.position == pytest.approx((1.2, 0.0))
     assert said(system, "cmd_vel is ignored on a route") == 1
+
+
+def test_it_stands_while_stop_holds_and_walks_on_when_it_is_released(system: System) -> None:
+    node = system.start(walker.Walker, parameters={"route": "0x6", "autostart": True})
+    lock = system.node.create_publisher(Bool, "/e_stop", QOS)
+    system.run(1.2)
+    lock.publish(Bool(data=True))
+    system.run(10.0)
+    assert (node.walk.steps, node.to_go()) == (2, "4 steps")
+    lock.publish(Bool(data=False))
+    system.run(2.1)
+    assert (node.walk.steps, node.to_go()) == (6, "0 steps")
+    assert (said(system, "STOP holds"), said(system, "STOP is released")) == (1, 1)
+
+
+def test_a_velocity_moves_it_only_once_stop_is_released(system: System) -> None:
+    node = system.start(walker.Walker)
+    lock = system.node.create_publisher(Bool, "/e_stop", QOS)
+    cmd_vel = system.node.create_publisher(Twist, "cmd_vel", 10)
+    system.node.create_timer(0.02, lambda: cmd_vel.publish(Twist(linear=Vector3(x=0.4))))
+    system.run(1.2)
+    lock.publish(Bool(data=True))
+    system.run(0.1)
+    taken = node.walk.steps
+    system.run(10.0)
+    assert node.walk.steps == taken > 0
+    lock.publish(Bool(data=False))
+    system.run(2.0)
+    assert node.walk.steps > taken
 
 
 def test_a_wrong_route_is_refused_and_the_old_one_stays(system: System) -> None:

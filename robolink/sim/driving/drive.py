@@ -11,7 +11,7 @@ import pymunk
 from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.sim.description import GRAVITY, Drive, RobotDescription, Wheel
 from robolink.sim.driving.arithmetic import clipped
-from robolink.sim.driving.motion import NEVER, Motion, motion_of_one
+from robolink.sim.driving.motion import NEVER, RAMPS, Motion, motion_of_one
 from robolink.sim.readings import Velocity, WheelState
 
 # Wheel kinematics: a robot's speeds from those of its wheels, and the other way round.
@@ -91,15 +91,35 @@ class Driver:
         self._wheels = Wheels(robot.wheels, robot.name, sideways=robot.drive.type == "omni")
         limits = _limits(robot.drive, body, robot.shape.outer_radius(), dt)
         self.motion: Motion[float] = motion_of_one(dt, robot.pose, limits, wheeled=bool(robot.wheels))
+        self.held = False
+        """True while it brakes and obeys no command."""
+        self._ramps = {name: limits[name] for name in RAMPS}
+
+    def hold(self) -> None:
+        """Brake as hard as the wheels grip, and obey no command until `release`."""
+        self.held = True
+        self._wheels.forget()
+        self._aim(Velocity(0.0, 0.0, 0.0))
+        self.motion.deadline = self.motion.expiry = NEVER
+        for name in RAMPS:
+            setattr(self.motion, name, math.inf)
+
+    def release(self) -> None:
+        """Obey commands again, within the drive's limits; until the next one it stands."""
+        self.held = False
+        for name, limit in self._ramps.items():
+            setattr(self.motion, name, limit)
 
     def command(self, velocity: Velocity, step: int) -> None:
         """Set the target velocity from `step` on, cut to the limits; it holds for the drive's timeout.
 
-        Raises `CommandError` when it is not finite.
+        While the robot is held, it changes nothing. Raises `CommandError` when it is not finite.
         """
         if not all(map(math.isfinite, velocity)):
             v, w, sideways = velocity
             raise CommandError(f"expected a finite velocity, got v={v:g} m/s, w={w:g} rad/s, sideways={sideways:g} m/s")
+        if self.held:
+            return
         self._wheels.forget()
         self._aim(self._within_limits(velocity))
         self.motion.deadline = self.motion.expiry = step + self._timeout_steps
@@ -107,12 +127,17 @@ class Driver:
     def turn_wheels(self, speeds: Mapping[str, float]) -> None:
         """Turn motors at these speeds (rad/s), each until its next command or a velocity command.
 
-        Raises `NotFoundError` for an unknown motor and `CommandError` for a speed that is not finite.
+        While the robot is held, it changes nothing. Raises `NotFoundError` for an unknown motor and `CommandError` for
+        a speed that is not finite.
         """
         for name, speed in speeds.items():
             if not math.isfinite(speed):
                 raise CommandError(f"expected a finite speed of motor '{name}', got {speed:g} rad/s")
-        self._aim(self._slowed(self._wheels.turn(speeds)))
+        velocity = self._wheels.turn(speeds)
+        if self.held:
+            self._wheels.forget()
+            return
+        self._aim(self._slowed(velocity))
         self.motion.deadline = self.motion.expiry = NEVER
 
     def wheels(self, motion: Motion[float], twist: Velocity) -> tuple[WheelState, ...]:

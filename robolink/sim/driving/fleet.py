@@ -83,6 +83,10 @@ class Fleet:
         if self._columns is not None:
             store(member.motion, self._columns.motion, self._rows[member.body])
 
+    def take_limits(self) -> None:
+        """Take over new limits of robots' own motions, from the next step on."""
+        self._disband()
+
     def rest(self, member: Member) -> None:
         """Stop a robot that has been put elsewhere."""
         self._disband()

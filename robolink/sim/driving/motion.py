@@ -18,10 +18,11 @@ from robolink.sim.quantities import Pose
 NEVER = 1e18
 """The deadline, in steps, of a command that holds until the next one."""
 
+RAMPS = ("a_dt", "side_dt", "alpha_dt")
+"""Names of the most that a step may change the set speeds by, in m/s and rad/s; infinite where only grip is a limit."""
+
 _LIMITS = (
-    "a_dt",  # the most that a step may change the set speeds by, in m/s and rad/s
-    "side_dt",
-    "alpha_dt",
+    *RAMPS,
     "steer_dt",
     "grip_dt",  # the most that a step can change the true speeds by, for the wheels' grip
     "turn_grip_dt",
