@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from robolink.geometry.plane import Pose
@@ -15,11 +15,18 @@ from robolink.sim import quantities
 from robolink.sim.colours import Colour
 from robolink.sim.description import Shape
 from robolink.sim.scene import triangles
+from robolink.sim.scene.mosaic import Mosaic, Patch
 from robolink.world_node.messages import facing
 from robolink.world_node.robot_topics import MAP
 
 LINE = 0.04
 """Width of walls, which have none themselves, in metres."""
+
+SIGN_LIFT = 0.002
+"""Distance of a sign's patches from its background, and half of that of the background from its wall, in metres."""
+
+FLAT_LIFT = 0.0005
+"""Height of the patches of a picture on the floor over its background, in metres."""
 
 _ITSELF = Vector3(x=1.0, y=1.0, z=1.0)
 """Scale of what is made of points: as they are."""
@@ -68,6 +75,60 @@ def upright(
     """Return the marker of rectangles that stand on the floor, each on a line."""
     points = [point for start, end in segments for point in _rectangle(start, end, 0.0, height)]
     return _marker(group, index, Marker.TRIANGLE_LIST, scale=_ITSELF, color=colour_message(colour), points=points)
+
+
+def floor_picture(shown: Mosaic, corner: tuple[float, float, float], size: tuple[float, float]) -> Marker:
+    """Return the marker of a picture on the floor.
+
+    Args:
+        shown: The picture.
+        corner: Place of its lower left corner in metres.
+        size: Width and height in metres.
+    """
+    marker = _marker("floor", 1, Marker.TRIANGLE_LIST, scale=_ITSELF, color=colour_message(shown.background))
+    marker.pose.position.x, marker.pose.position.y, marker.pose.position.z = corner
+    width, height = size[0] / shown.columns, size[1] / shown.rows
+    places, marker.colors = _cells(shown)
+    marker.points = [Point(x=u * width, y=v * height, z=lift * FLAT_LIFT) for u, v, lift in places]
+    return marker
+
+
+def sign_picture(shown: Mosaic, size: tuple[float, float]) -> Marker:
+    """Return the marker of a sign in its own frame: x out of its face, y to the right of who looks at it, z up.
+
+    Args:
+        shown: The picture.
+        size: Width and height in metres.
+    """
+    marker = _marker("signs", 0, Marker.TRIANGLE_LIST, scale=_ITSELF, color=colour_message(shown.background))
+    width, height = size[0] / shown.columns, size[1] / shown.rows
+    places, marker.colors = _cells(shown)
+    marker.points = [
+        Point(x=SIGN_LIFT * (2 + lift), y=u * width - size[0] / 2, z=v * height - size[1] / 2) for u, v, lift in places
+    ]
+    return marker
+
+
+def fix_to(marker: Marker, frame: str) -> None:
+    """Let a marker move with the frame of a robot."""
+    marker.header, marker.frame_locked = Header(frame_id=frame), True
+
+
+def _cells(shown: Mosaic) -> tuple[list[tuple[int, int, int]], list[ColorRGBA]]:
+    """Return the corners of a picture's triangles, and their colours.
+
+    Corners are cells to the right, cells up from its lower edge, and 0 for the background, which reaches behind all
+    the rest: nothing shines through between two patches. 1 is the rest.
+    """
+    places: list[tuple[int, int, int]] = []
+    colours: list[ColorRGBA] = []
+    whole = Patch(0, 0, shown.columns, shown.rows, shown.background)
+    for lift, (left, top, right, bottom, colour) in chain([(0, whole)], ((1, each) for each in shown.patches)):
+        low, high = shown.rows - bottom, shown.rows - top
+        places += [(left, low, lift), (right, low, lift), (right, high, lift)]
+        places += [(left, low, lift), (right, high, lift), (left, high, lift)]
+        colours += [colour_message(colour)] * 6
+    return places, colours
 
 
 def _prism(corners: list[quantities.Point], half: float) -> list[Point]:

@@ -10,8 +10,14 @@ with DELETEALL: it is all of its topic.
 | `~/walls` | `walls` | walls of one colour and height, at their upper edge | LINE_LIST |
 | | `wall_faces` | the same ones, upright: nothing of them is seen from above | TRIANGLE_LIST |
 | | `obstacles` | each fixed obstacle | CYLINDER, CUBE, TRIANGLE_LIST |
+| | `signs` | each sign in its own frame: x out of its face, y to the right of who looks at it, z up | TRIANGLE_LIST |
+| | `poles` | poles of signs that hang on nothing | CYLINDER |
 | `~/objects` | `obstacles` | each that moves or can be pushed | CYLINDER, CUBE, TRIANGLE_LIST |
 | | `robots` | each robot, in its own frame, frame_locked | CYLINDER, CUBE, TRIANGLE_LIST |
+| | `signs` | signs on them, in the frame of the robot or in `map` | TRIANGLE_LIST |
+
+A picture is a background and patches of one colour, whose triangles have a colour for each corner. The `text` is the
+name of a robot, and the tag or the file's name of a sign.
 
 Colours are those of the world file, else those of `robolink.sim.looks`. The floor lies a little below z = 0, where
 viewers draw grids and maps: what lies in one plane flickers.
@@ -20,6 +26,7 @@ viewers draw grids and maps: what lies in one plane flickers.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import groupby
 
 from robolink.clock import Clock
@@ -41,7 +48,10 @@ from robolink.sim.looks import (
     wall_colour,
 )
 from robolink.sim.scene import strokes, triangles
+from robolink.sim.scene.mosaic import mosaic
+from robolink.sim.scene.pictures import cached_picture
 from robolink.world_node import markers
+from robolink.world_node.signs import Signs
 from robolink.world_node.simulation import LATCHED, Simulation
 
 PERIOD = 0.1
@@ -49,6 +59,9 @@ PERIOD = 0.1
 
 LOWEST, HIGHEST, STEP = -0.02, -0.002, 0.001
 """Heights of the floor and of the last paint on it, and the most between two layers, in metres."""
+
+MOST_PATCHES, MOST_COLOURS = 10_000, 48
+"""Most rectangles and colours of the floor's picture; each rectangle takes 240 bytes."""
 
 MOST_FACES = 2_000
 """Most walls that are drawn as faces too: a map may have a hundred thousand."""
@@ -90,6 +103,7 @@ class Scenery:
 
     def __init__(self, description: WorldDescription) -> None:
         self.description = description
+        self._signs = Signs(description)
 
     def floor(self) -> MarkerArray:
         """Return the markers of the floor and of what is painted on it."""
@@ -97,12 +111,22 @@ class Scenery:
 
     def walls(self) -> MarkerArray:
         """Return the markers of things that stand."""
-        return _all_of([*_walls(self.description.walls), *_standing(self.description)])
+        return _all_of([*_walls(self.description.walls), *_standing(self.description), *self._signs.standing()])
 
     def objects(self, simulation: Simulation) -> MarkerArray:
         """Return the markers of things that move, are pushed or drive, where they are now."""
-        world = simulation.world
-        return _all_of([*_moving(world), *_robots(world, _frames(simulation))])
+        world, frames = simulation.world, _frames(simulation)
+        return _all_of([*_moving(world), *_robots(world, frames), *self._moving_signs(world, frames)])
+
+    def _moving_signs(self, world: World, frames: dict[str, str]) -> Iterator[Marker]:
+        """Yield the markers of signs on what moves, is pushed or drives."""
+        obstacles = zip(world.description.obstacles, world.obstacle_poses(), strict=True)
+        placed = [(sign, pose, None) for each, pose in obstacles if moves(each) for sign in each.signs]
+        on_robots = [
+            (sign, Pose(), frame) for name, frame in frames.items() for sign in world.robots[name].description.signs
+        ]
+        for index, (sign, origin, frame) in enumerate([*placed, *on_robots]):
+            yield self._signs.at(origin, sign, index, frame)
 
 
 def _all_of(found: Sequence[Marker]) -> MarkerArray:
@@ -115,30 +139,45 @@ def _frames(simulation: Simulation) -> dict[str, str]:
 
 
 def _ground(description: WorldDescription) -> Iterator[Marker]:
-    settings = description.world.floor
-    if settings.colour is None and settings.image is None and not description.paint:
+    """Yield the markers of the floor: its area in its colour, and its picture."""
+    settings, picture = description.world.floor, None
+    if settings.image is not None:
+        with suppress(OSError, ValueError):  # its file has gone since the world was read
+            picture = cached_picture(settings.image)
+    if settings.colour is None and picture is None and not description.paint:
         return
+    area = ground_area(description, (0, 0) if picture is None else (picture.shape[1], picture.shape[0]))
+    corners = [(area.x_min, area.y_min), (area.x_max, area.y_min), (area.x_max, area.y_max), (area.x_min, area.y_max)]
     colour = FLOOR if settings.colour is None else colour_of(settings.colour)
-    left, low, right, high = ground_area(description)
-    corners = [(left, low), (right, low), (right, high), (left, high)]
     yield markers.flat("floor", 0, triangles.of_polygon(corners), LOWEST, colour)
+    if picture is not None:
+        there = strokes.extent(settings, (), (picture.shape[1], picture.shape[0]))
+        side = strokes.resolution_of(settings)
+        corner, size = (there.x, there.y, LOWEST + STEP / 4), (there.columns * side, there.rows * side)
+        yield markers.floor_picture(mosaic(picture, MOST_PATCHES, MOST_COLOURS), corner, size)
 
 
-def ground_area(description: WorldDescription) -> Area:
-    """Return the area of the floor in metres: the world's size, or all that stands in it, and what is painted."""
-    size = description.world.size
+def ground_area(description: WorldDescription, picture: tuple[int, int] = (0, 0)) -> Area:
+    """Return the area of the floor in metres: the world's size, or all that stands in it, and all that is painted.
+
+    Args:
+        description: The world.
+        picture: Columns and rows of the floor's picture.
+    """
+    size, settings = description.world.size, description.world.floor
     area = extent(description) if size is None else Area(0.0, 0.0, *size)
-    for each in description.paint:
-        box = strokes.box_of(each)
-        area = area.grown(box.x_min, box.y_min).grown(box.x_max, box.y_max)
+    painted, side = strokes.extent(settings, description.paint, picture), strokes.resolution_of(settings)
+    if painted.pixels:
+        area = area.grown(painted.x, painted.y)
+        area = area.grown(painted.x + painted.columns * side, painted.y + painted.rows * side)
     return area
 
 
 def _paint(description: WorldDescription) -> Iterator[Marker]:
-    layers = len(description.paint)
-    step = min(STEP, (HIGHEST - LOWEST) / (layers + 1))
+    lowest = LOWEST + STEP
+    step = min(STEP, (HIGHEST - lowest) / max(1, len(description.paint)))
     for index, each in enumerate(description.paint):
-        z = LOWEST + step * (index + 2)
+        z = lowest + step * index
         yield markers.flat("paint", index, triangles.of_paint(each), z, colour_of(each.colour))
 
 
@@ -172,5 +211,6 @@ def _robots(world: World, frames: dict[str, str]) -> Iterator[Marker]:
         robot = world.robots[name].description
         height = robot.height or ROBOT_HEIGHT
         marker = markers.solid("robots", index, robot.shape, height, Pose(), robot_colour(robot))
-        marker.header.frame_id, marker.frame_locked = frame, True
+        marker.text = name
+        markers.fix_to(marker, frame)
         yield marker

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,12 @@ from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
+from robolink.message import encode
 from robolink.sim import load_world
 from robolink.sim.colours import hex_of
 from robolink.sim.description import WorldDescription
 from robolink.sim.drawing import draw_world
+from robolink.sim.scene import pictures
 from robolink.world_node import Shapes, Simulation
 from robolink.world_node.shapes import Scenery
 from robolink.world_node.simulation import LATCHED
@@ -58,7 +61,7 @@ def heard(virtual: Context, executor: SingleThreadedExecutor, tmp_path: Path) ->
     return found
 
 
-def of(markers: list[Marker], group: str) -> list[Marker]:
+def of(markers: Sequence[Marker], group: str) -> list[Marker]:
     """The markers of a namespace; the message begins with the deletion of all that was there."""
     assert markers[0].action == Marker.DELETEALL
     return [each for each in markers[1:] if each.ns == group]
@@ -159,3 +162,103 @@ def drawn_colours(description: WorldDescription) -> set[str]:
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())[..., :3].reshape(-1, 3)
     return {hex_of((int(red), int(green), int(blue))) for red, green, blue in np.unique(pixels, axis=0)}
+
+
+def test_the_left_of_a_sign_is_at_the_left_of_who_looks_at_its_face(tmp_path: Path) -> None:
+    left_red, top_green = [(255, 0, 0), (255, 255, 255)], [(0, 128, 0), (0, 128, 0)]
+    write_picture(tmp_path / "sign.png", [top_green, left_red, left_red])
+    file = tmp_path / "world.yaml"
+    file.write_text(
+        "signs: [{image: sign.png, pose: [1, 2, 1.5708], size: 0.4, z: 0.5}]\n"
+        "walls: [{polyline: [[0, 0], [4, 0]]}]\nrobots: [{name: bob, pose: [2, 1]}]"
+    )
+    walls = Scenery(load_world(file)).walls().markers
+    (sign,), (pole,) = of(walls, "signs"), of(walls, "poles")
+    assert (sign.pose.position.x, sign.pose.position.y, sign.pose.position.z, sign.text) == (1, 2, 0.5, "sign")
+    assert (sign.pose.orientation.z, sign.pose.orientation.w) == pytest.approx((0.7071, 0.7071), abs=1e-4)
+    # it looks to +y: who looks at it looks to -y, and has -x at the right
+    assert seen_at(sign, 0.15, -0.1) == "#ffffff"
+    assert seen_at(sign, -0.15, -0.1) == "#ff0000", "y grows to the right of who looks"
+    assert seen_at(sign, 0.0, 0.25) == "#008000", "it is 0.6 m high"
+    assert all(point.x > 0.0 for point in sign.points), "in front of the wall"
+    assert (pole.type, pole.pose.position.x) == (Marker.CYLINDER, 1.0)
+    assert pole.scale.z == pytest.approx(0.2)
+
+
+def write_picture(path: Path, rows: list[list[tuple[int, int, int]]]) -> None:
+    """Write a picture of a few pixels, each of them 20 times as large."""
+    import numpy as np
+
+    cv2 = pytest.importorskip("cv2")
+    pixels = np.repeat(np.repeat(np.array(rows, np.uint8), 20, 0), 20, 1)
+    assert cv2.imwrite(str(path), pixels[:, :, ::-1])
+
+
+def seen_at(sign: Marker, y: float, z: float) -> str:
+    """The colour of a sign at a place of it: that of the last triangle there, as viewers from above paint it."""
+    found = ""
+    for index in range(0, len(sign.points), 3):
+        corners = [(each.y, each.z) for each in sign.points[index : index + 3]]
+        sides = zip(corners, corners[1:] + corners[:1], strict=True)
+        turns = [(q[0] - p[0]) * (z - p[1]) - (q[1] - p[1]) * (y - p[0]) for p, q in sides]
+        if min(turns) >= 0 or max(turns) <= 0:
+            at = sign.colors[index]
+            found = hex_of((round(255 * at.r), round(255 * at.g), round(255 * at.b)))
+    return found
+
+
+def test_signs_stand_on_things_and_drive_along(virtual: Context, tmp_path: Path) -> None:
+    file = tmp_path / "world.yaml"
+    file.write_text("""
+obstacles:
+  - {box: [0.2, 0.2], pose: [1, 1, 1.5708], signs: [{tag: 36h11/1, pose: [0.1, 0, 0]}]}
+  - {box: [0.2, 0.2], pose: [2, 1, 1.5708], mass: 1, signs: [{tag: 36h11/2, pose: [0.1, 0, 0]}]}
+robots: [{name: bob, pose: [3, 1], signs: [{tag: 36h11/3, pose: [-0.1, 0, 3.1416], z: 0.2, size: 0.08}]}]
+""")
+    description = load_world(file)
+    simulation, scenery = Simulation(Node("world", context=virtual), description, 0), Scenery(description)
+    (still,) = of(scenery.walls().markers, "signs")
+    pushed, driven = of(scenery.objects(simulation).markers, "signs")
+    assert (still.text, pushed.text, driven.text) == ("36h11/1", "36h11/2", "36h11/3")
+    assert (still.header.frame_id, pushed.header.frame_id, driven.header.frame_id) == ("map", "map", "base_link")
+    assert (still.pose.position.x, still.pose.position.y) == pytest.approx((1.0, 1.1), abs=1e-4)
+    assert (pushed.pose.position.x, pushed.pose.position.y) == pytest.approx((2.0, 1.1), abs=1e-4)
+    assert (driven.pose.position.x, driven.frame_locked) == (-0.1, True)
+    assert not of(scenery.walls().markers, "poles")
+
+
+@pytest.mark.parametrize("path", WORLDS, ids=lambda path: path.stem)
+def test_messages_are_small(path: Path) -> None:
+    scenery = Scenery(load_world(path))
+    assert len(encode(scenery.floor())) < 50_000
+    assert len(encode(scenery.walls())) < (300_000 if path.stem == "signs" else 60_000)
+
+
+def test_a_picture_that_has_gone_leaves_a_plain_plate(tmp_path: Path) -> None:
+    write_picture(tmp_path / "gone.png", [[(255, 0, 0)]])
+    file = tmp_path / "world.yaml"
+    file.write_text("signs: [{image: gone.png, pose: [1, 2]}]\nworld: {floor: {image: gone.png, resolution: 0.01}}")
+    description = load_world(file)
+    scenery = Scenery(description)
+    (tmp_path / "gone.png").unlink()
+    pictures._known.clear()
+    (sign,) = of(scenery.walls().markers, "signs")
+    assert len(sign.points) == 6
+    assert not of(scenery.floor().markers, "floor")
+
+
+def test_the_floors_picture_lies_where_the_world_file_has_it(tmp_path: Path) -> None:
+    write_picture(tmp_path / "mat.png", [[(255, 0, 0), (255, 255, 255), (255, 255, 255)]])
+    file = tmp_path / "world.yaml"
+    file.write_text(
+        "world: {floor: {colour: '#102030', image: mat.png, resolution: 0.01, origin: [1, 2]}}\n"
+        "walls: [{polyline: [[0, 0], [1.2, 0]]}]"
+    )
+    ground, mat = of(Scenery(load_world(file)).floor().markers, "floor")
+    assert colour(ground) == "#102030"
+    assert box(ground) == pytest.approx((0.0, -0.5, 1.6, 2.2))
+    assert (mat.pose.position.x, mat.pose.position.y) == (1, 2)
+    assert box(mat) == pytest.approx((0.0, 0.0, 0.6, 0.2))
+    assert ground.pose.position.z < mat.pose.position.z < 0
+    red = {round(each.x, 6) for each, tint in zip(mat.points, mat.colors, strict=True) if not tint.g}
+    assert red == {0.0, 0.2}

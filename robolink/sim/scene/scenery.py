@@ -52,9 +52,9 @@ def scenery(description: WorldDescription) -> Scenery:
         ValueError: for a colour or a tag that is none, which `load_world` refuses.
     """
     read = cache(cached_picture)
-    fixed = [each for each in description.obstacles if not moves(each)]
-    standing = _joined([_walls(description.walls), *(_obstacle(each, each.start.place) for each in fixed)])
+    standing = standing_surfaces(description)
     signs = [sign_surfaces(each, read, standing) for each in description.signs]
+    fixed = [each for each in description.obstacles if not moves(each)]
     signs += [sign_surfaces(_placed(sign, each.start), read) for each in fixed for sign in each.signs]
     settings = description.world.floor
     return Scenery(
@@ -68,6 +68,12 @@ def scenery(description: WorldDescription) -> Scenery:
         },
         {each.name: _robot(each, read) for each in description.robots},
     )
+
+
+def standing_surfaces(description: WorldDescription) -> Surfaces:
+    """Return the surfaces of walls and of obstacles that never move, without signs."""
+    fixed = [each for each in description.obstacles if not moves(each)]
+    return _joined([_walls(description.walls), *(_obstacle(each, each.start.place) for each in fixed)])
 
 
 def robot_surfaces(robot: RobotDescription) -> Surfaces:
