@@ -1,7 +1,7 @@
 // WebSocket client of the view's server: Foxglove's protocol, with the batches and statistics of robolink.v1.
 //
-// Events: open, close, info (serverInfo), channels, services, statistics, graph, parameters, recording, playback, time,
-// status. Messages go to `onmessage(subscription, time, view)`. Times are milliseconds.
+// Events: open, close, info (serverInfo), channels, services, statistics, graph, parameters, recording, stop, playback,
+// time, status. Messages go to `onmessage(subscription, time, view)`. Times are milliseconds.
 
 import { Schema } from "./cdr.js";
 import { Emitter } from "./dom.js";
@@ -146,8 +146,7 @@ export class Connection extends Emitter {
   }
 
   /**
-   * Publish a message. `options.stopAfter`: seconds after which the server stops a robot that hears nothing more;
-   * `options.hold`: until `unpublish` no client may drive on this topic.
+   * Publish a message. `options.stopAfter`: seconds after which the server stops a robot that hears nothing more.
    */
   publish(topic, type, message, options = {}) {
     const payload = this.schemaOf(type).encode(message);
@@ -162,13 +161,6 @@ export class Connection extends Emitter {
     new DataView(data.buffer).setUint32(1, this._publishers.get(key), true);
     data.set(payload, 5);
     return this._raw(data);
-  }
-
-  /** End what `publish` with the same options has begun. */
-  unpublish(topic, type, options = {}) {
-    const key = publisherKey(topic, type, options);
-    if (this._publishers.has(key)) this.send({ op: "unadvertise", channelIds: [this._publishers.get(key)] });
-    this._publishers.delete(key);
   }
 
   /** Service by its name, or undefined: {id, name, type, request, response}. */
@@ -263,6 +255,7 @@ const TEXT = {
   },
   statistics(connection, operation) { connection.emit("statistics", operation); },
   parameterValues(connection, operation) { connection.emit("parameters", operation); },
+  stop(connection, operation) { connection.emit("stop", operation); },
   recording(connection, operation) { connection.emit("recording", operation); },
   learn(connection, operation) { connection.learn = operation; connection.emit("learn", operation); },
   exercise(connection, operation) { connection.emit("exercise", operation); },

@@ -18,19 +18,20 @@
 // - words(key, values), tell(text, isError): texts of the page, and notes to the person
 // - on("pick", (topic, path) => ...): a number in the tree of a message was clicked; a drag has text/robolink-field,
 //   JSON {topic, path}
-// - on("stop"), drivable(): the STOP button; topics that drive robots, with their types
+// - stopping: STOP (stop.js): held, press(), release(); on("stop") tells of a press and of each change
+// - drivable(): topics that drive robots, with their types
 // - on("header", (element) => ...): place for a tool in the header; also emitted when it is built again
 
 import { Connection } from "./connection.js";
 import { button, Emitter, h, isTyping } from "./dom.js";
 import { Layout, PANELS } from "./layout.js";
 import { addRecordButton } from "./recording.js";
+import { Stop } from "./stop.js";
 import { Frames } from "./tf.js";
 import { Timeline } from "./timeline.js";
 import { Topics } from "./topics.js";
 import { addWords, choose, words } from "./words.js";
 
-const STOP_SECONDS = 1, STOP_PERIOD = 50;
 const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
 const SETTINGS = "robolink.settings";
 
@@ -98,19 +99,6 @@ class App extends Emitter {
     for (const topic of this.topics.values()) if (TWISTS.includes(topic.type) && /(^|\/|_)cmd_vel($|\/|_)/.test(topic.name)) found.set(topic.name, topic.type);
     return found;
   }
-
-  /** Stop all robots: zeros for a second. Event: stop. */
-  stop() {
-    this.emit("stop");
-    const robots = this.drivable();
-    this.tell(robots.size ? words("stop.sent", { topics: [...robots.keys()].join(", ") }) : words("stop.none"), !robots.size);
-    const end = performance.now() + STOP_SECONDS * 1000;
-    const send = () => {
-      for (const [name, type] of robots) this.connection.publish(name, type, {});
-      if (performance.now() < end) setTimeout(send, STOP_PERIOD);
-    };
-    send();
-  }
 }
 
 const app = new App();
@@ -156,11 +144,10 @@ function buildHeader() {
     else app.layout.add(menu.value);
     menu.value = "";
   } }, h("option", { value: "" }, "+"), ...PANELS.map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
-  const stop = button(words("stop"), words("stop.title"), () => app.stop(), { id: "stop" });
   document.getElementById("header").replaceChildren(
     h("h1", {}, "robolink"), state, h("span", { id: "tools" }), h("span", { class: "gap" }), h("span", { id: "speed", class: "dim" }),
     menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
-    button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" }), stop);
+    button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" }), app.stopping.button());
   app.emit("header", document.getElementById("tools"));
   showState();
 }
@@ -171,9 +158,6 @@ function showState() {
   state.textContent = connection.isOpen ? (readOnly ? words("read-only") : words("connected")) : words(app.lost ? "lost" : "connecting");
   state.title = readOnly ? words("read-only.why") : "";
   state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
-  const stop = document.getElementById("stop");
-  stop.disabled = !connection.isOpen || readOnly;
-  stop.title = readOnly ? words("read-only.why") : words("stop.title");
 }
 
 const SHORTCUTS = ["space", "?", "p", "l", "t", "1…9", "esc", "←↑→↓", "+ -", "f", "g", "i"];
@@ -189,9 +173,10 @@ function help() {
 
 function shortcut(event) {
   if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-  const acts = { "?": help, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => !app.connection.isReadOnly && app.stop() };
+  const acts = { "?": help, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
-  if (!act || (event.key === " " && event.target instanceof HTMLButtonElement)) return;
+  // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
+  if (!act || (event.key === " " && event.target.matches("button:focus-visible, summary"))) return;
   event.preventDefault();
   if (!event.repeat || event.key === " ") act();
 }
@@ -217,6 +202,7 @@ function begin() {
   document.body.append(app.notes);
   showTheme();
   addRecordButton(app);
+  app.stopping = new Stop(app);
   app.timeline = new Timeline(document.getElementById("timeline"), app);
   buildHeader();
   app.layout = new Layout(document.getElementById("panels"), app);

@@ -4,8 +4,7 @@ const WORDS = {
   en: {
     "language": "Português", "connecting": "connecting…", "connected": "connected", "lost": "connection lost: trying again",
     "read-only": "read-only", "read-only.why": "this page was opened without the token: it may look, but not act",
-    "stop": "STOP", "stop.title": "Stop all robots: zeros on every cmd_vel (space)", "stop.sent": "zeros sent to {topics}",
-    "stop.none": "no cmd_vel topic is known", "theme": "dark or light", "help": "shortcuts (?)", "close": "close",
+    "theme": "dark or light", "help": "shortcuts (?)", "close": "close",
     "add": "add panel", "layout.reset": "default layout", "panel.bigger": "whole page", "panel.move": "move",
     "panel.remove": "remove panel", "panel.world": "World", "panel.topics": "Topics", "panel.plot": "Plot", "panel.log": "Log", "panel.teleop": "Teleop",
     "panel.services": "Services", "panel.parameters": "Parameters", "panel.images": "Images", "panel.graph": "Graph", "panel.actions": "Actions", "panel.turtlesim": "Turtlesim", "panel.learn": "Exercises", "frames": "frames",
@@ -31,8 +30,7 @@ const WORDS = {
   pt: {
     "language": "English", "connecting": "conectando…", "connected": "conectado", "lost": "conexão perdida: tentando de novo",
     "read-only": "só leitura", "read-only.why": "esta página foi aberta sem o token: pode olhar, mas não agir",
-    "stop": "PARAR", "stop.title": "Parar todos os robôs: zeros em cada cmd_vel (espaço)", "stop.sent": "zeros enviados para {topics}",
-    "stop.none": "nenhum topic cmd_vel conhecido", "theme": "escuro ou claro", "help": "atalhos (?)", "close": "fechar",
+    "theme": "escuro ou claro", "help": "atalhos (?)", "close": "fechar",
     "add": "adicionar painel", "layout.reset": "layout padrão", "panel.bigger": "página inteira", "panel.move": "mover",
     "panel.remove": "remover painel", "panel.world": "Mundo", "panel.topics": "Topics", "panel.plot": "Gráfico", "panel.log": "Log", "panel.teleop": "Teleoperação",
     "panel.services": "Services", "panel.parameters": "Parâmetros", "panel.images": "Imagens", "panel.graph": "Grafo", "panel.actions": "Actions", "panel.turtlesim": "Turtlesim", "panel.learn": "Exercícios", "frames": "quadros",

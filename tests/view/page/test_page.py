@@ -20,7 +20,7 @@ from tests.support.pages import Page, opened, spun
 from tests.support.spins import spin_until
 
 FILES = Path(str(robolink.view.__file__)).with_name("page")
-MOST = 80_000
+MOST = 90_000
 EXERCISES = ("panels/learn.js", "panels/learn_track.js", "panels/learn.css")
 """Files of the panel of exercises, which only `robolink learn view` asks for: they are not counted into MOST."""
 MOST_OF_EXERCISES = 8_000
@@ -28,7 +28,7 @@ MOST_OF_EXERCISES = 8_000
 browsing = [pytest.mark.processes, needs_chromium]
 
 
-def test_the_page_weighs_at_most_80_kb() -> None:
+def test_the_page_weighs_at_most_90_kb() -> None:
     found = {path: find(f"/{path}") for path in (each.relative_to(FILES).as_posix() for each in FILES.rglob("*"))}
     sizes = {path: len(gzip.compress(file.body)) for path, file in found.items() if file is not None}
     assert len(sizes) > 30
@@ -69,7 +69,7 @@ class TestInTheBrowser:
                 browser.press(" ")
             with spun(page.node) as executor:
                 spin_until(executor, lambda: {("/cmd_vel", 0.0), ("/r2/cmd_vel", 0.0)} <= set(heard))
-            browser.wait("document.querySelector('.note').textContent.includes('/r2/cmd_vel')")
+            browser.wait("document.getElementById('stopped').textContent.includes('/r2/cmd_vel')")
             page.picture(f"stop_{way}")
             other.destroy()
 
