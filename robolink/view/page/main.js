@@ -160,7 +160,7 @@ function showState() {
   state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
 }
 
-const SHORTCUTS = ["space", "?", "p", "l", "t", "1…9", "esc", "←↑→↓", "+ -", "f", "g", "i"];
+const SHORTCUTS = ["space", "?", "p", "l", "t", "1…9", "esc", "←↑→↓", "+ -", "f", "g", "i", "m"];
 const SHORTCUT_WORDS = { "1…9": "digit", "←↑→↓": "arrows", "+ -": "zoom" };
 
 function help() {
