@@ -29,7 +29,7 @@ const milliseconds = (view, at) => (view.getUint32(at + 4, true) * 4294967296 + 
 function putTime(view, at, time) { view.setBigUint64(at, BigInt(Math.round(time * 1000)) * 1000n, true); }
 
 const publisherKey = (topic, type, options) => `${topic} ${type} ${JSON.stringify(options)}`;
-const emptyGraph = () => ({ published: new Map(), subscribed: new Map(), services: new Map(), types: new Map(), nodes: [] });
+const emptyGraph = () => ({ published: new Map(), subscribed: new Map(), services: new Map(), types: new Map(), qos: new Map(), nodes: [] });
 
 export class Connection extends Emitter {
   /** @param {string} address of the WebSocket */
@@ -269,6 +269,7 @@ function updateGraph(connection, operation) {
   for (const [key, ids] of [["published", "publisherIds"], ["subscribed", "subscriberIds"]]) {
     for (const each of operation[`${key}Topics`] ?? []) {
       graph[key].set(each.name, each[ids]);
+      each[ids].forEach((node, i) => graph.qos.set(`${key} ${each.name} ${node}`, each.qos?.[i] ?? ""));
       if (each.type) graph.types.set(each.name, each.type);
     }
   }
