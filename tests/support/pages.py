@@ -21,6 +21,10 @@ PICTURES = Path(os.environ.get("ROBOLINK_PICTURES", Path(tempfile.gettempdir()) 
 """Folder of the screenshots, which are looked at and not compared."""
 
 
+KINDS = ("empty", "topics", "drive", "camera", "robots", "bag", "learn")
+"""Kinds of systems, each of which has a layout of its own: `KINDS` of page/layouts.js."""
+
+
 class Page:
     """A page that is open: `browser` acts on it, `system` is what it shows."""
 
@@ -82,7 +86,7 @@ def opened(
         token: False for an address without the token.
         keep: True to keep what an earlier page of the same port has remembered.
         view: View to look at; None makes one of a new system.
-        storage: More for the browser's memory: `settings={"language": "pt"}`.
+        storage: More for the browser's memory: `settings={"language": "pt"}`; `layout` is that of each kind of system.
     """
     browser.problems.clear()
     with shown() if view is None else nullcontext() as system:
@@ -104,9 +108,11 @@ def _remember(browser: Browser, view: View, panels: tuple[str, ...], storage: di
     """Fill the memory that the browser keeps for this address, from a file of it that runs nothing."""
     browser.open(f"http://127.0.0.1:{view.port}/style.css")
     browser.wait("location.pathname == '/style.css' && document.readyState == 'complete'")
+    layout = storage.pop("layout", None)
     if panels:
-        columns = [{"width": 50, "cells": [{"id": name, "height": 100}]} for name in panels]
-        storage = {"layout": {"columns": columns}, **storage}
+        layout = {"columns": [{"width": 50, "cells": [{"tabs": [{"id": name}]}]} for name in panels]}
+    if layout is not None:
+        storage["layouts"] = {prefix + kind: {"changed": True, **layout} for kind in KINDS for prefix in ("", "phone.")}
     for name, value in storage.items():
         browser.js(f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))})")
 

@@ -24,7 +24,7 @@ PANELS = (
     "world", "topics", "plot", "log", "teleop", "services", "parameters", "images", "graph", "actions",
     "turtlesim", "learn",
 )  # fmt: skip
-"""Names of the page's panels, as `page/layout.js` has them."""
+"""Names of the page's panels, as `page/layouts.js` has them."""
 
 
 def _checked_panels(names: str) -> str:

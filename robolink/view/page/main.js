@@ -18,20 +18,20 @@
 // - words(key, values), tell(text, isError): texts of the page, and notes to the person
 // - on("pick", (topic, path) => ...): a number in the tree of a message was clicked; a drag has text/robolink-field,
 //   JSON {topic, path}
-// - stopping: STOP (stop.js): held, press(), release(); on("stop") tells of a press and of each change
-// - drivable(): topics that drive robots, with their types
+// - on("stop"), drivable(): the STOP button; topics that drive robots, with their types
 // - on("header", (element) => ...): place for a tool in the header; also emitted when it is built again
 
 import { Connection } from "./connection.js";
 import { button, Emitter, h, isTyping } from "./dom.js";
-import { Layout, PANELS } from "./layout.js";
+import { Layout } from "./layout.js";
+import { offered } from "./layouts.js";
 import { addRecordButton } from "./recording.js";
-import { Stop } from "./stop.js";
 import { Frames } from "./tf.js";
 import { Timeline } from "./timeline.js";
 import { Topics } from "./topics.js";
 import { addWords, choose, words } from "./words.js";
 
+const STOP_SECONDS = 1, STOP_PERIOD = 50;
 const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
 const SETTINGS = "robolink.settings";
 
@@ -99,6 +99,19 @@ class App extends Emitter {
     for (const topic of this.topics.values()) if (TWISTS.includes(topic.type) && /(^|\/|_)cmd_vel($|\/|_)/.test(topic.name)) found.set(topic.name, topic.type);
     return found;
   }
+
+  /** Stop all robots: zeros for a second. Event: stop. */
+  stop() {
+    this.emit("stop");
+    const robots = this.drivable();
+    this.tell(robots.size ? words("stop.sent", { topics: [...robots.keys()].join(", ") }) : words("stop.none"), !robots.size);
+    const end = performance.now() + STOP_SECONDS * 1000;
+    const send = () => {
+      for (const [name, type] of robots) this.connection.publish(name, type, {});
+      if (performance.now() < end) setTimeout(send, STOP_PERIOD);
+    };
+    send();
+  }
 }
 
 const app = new App();
@@ -136,19 +149,30 @@ function showLanguage() {
   app.layout.rebuild();
 }
 
+/** What is shown: the bag, or the domain of the running system. */
+function systemName() {
+  const { bag, domain } = app.connection.info?.robolink ?? {};
+  return bag ? bag.split(/[\\/]/).filter(Boolean).pop() : domain === undefined ? "robolink" : words(app.isLearn ? "panel.learn" : "domain", { domain });
+}
+
 function buildHeader() {
   document.documentElement.lang = choose(settings.language);
-  const state = h("span", { id: "state", role: "status" });
-  const menu = h("select", { id: "add", "aria-label": words("add"), title: words("add"), onchange: () => {
+  document.body.classList.toggle("bag", app.isBag);
+  document.body.classList.toggle("learning", app.isLearn);
+  const name = systemName(), state = h("span", { id: "state", role: "status" });
+  document.title = name === "robolink" ? name : `${name} – robolink`;
+  const menu = h("select", { id: "add", "aria-label": words("add"), title: `${words("add")} (a)`, onchange: () => {
     if (menu.value === "reset") app.layout.reset();
     else app.layout.add(menu.value);
     menu.value = "";
-  } }, h("option", { value: "" }, "+"), ...PANELS.map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
-  document.getElementById("header").replaceChildren(
-    h("h1", {}, "robolink"), state, h("span", { id: "tools" }), h("span", { class: "gap" }), h("span", { id: "speed", class: "dim" }),
-    menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
-    button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" }), app.stopping.button());
-  app.emit("header", document.getElementById("tools"));
+  } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
+  const stop = button(words("stop"), words("stop.title"), () => app.stop(), { id: "stop", hidden: app.isBag || app.isLearn });
+  const tools = h("span", { id: "tools" });
+  document.getElementById("header").replaceChildren(h("h1", { title: name }, name), state, h("span", { class: "gap" }),
+    h("button", { id: "more", type: "button", "aria-label": words("more"), popovertarget: "menu" }, "⋯"),
+    h("div", { id: "menu", popover: "auto" }, tools, menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
+      button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" })), stop);
+  app.emit("header", tools);
   showState();
 }
 
@@ -158,27 +182,44 @@ function showState() {
   state.textContent = connection.isOpen ? (readOnly ? words("read-only") : words("connected")) : words(app.lost ? "lost" : "connecting");
   state.title = readOnly ? words("read-only.why") : "";
   state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
+  const stop = document.getElementById("stop");
+  stop.disabled = !connection.isOpen || readOnly;
+  stop.title = readOnly ? words("read-only.why") : words("stop.title");
 }
 
-const SHORTCUTS = ["space", "?", "p", "l", "t", "1…9", "esc", "←↑→↓", "+ -", "f", "g", "i", "m"];
-const SHORTCUT_WORDS = { "1…9": "digit", "←↑→↓": "arrows", "+ -": "zoom" };
+const SHORTCUTS = ["space", "d", "g", "i", "a", "1…9", "⇥ ←→ del", "esc", "p", "l", "←↑→↓", "+ -", "f", "t", "?"];
+const SHORTCUT_WORDS = { "1…9": "digit", "⇥ ←→ del": "tabs", "←↑→↓": "arrows", "+ -": "zoom" };
 
 function help() {
-  const dialog = h("dialog", { class: "help", onclose: () => dialog.remove() }, h("h2", {}, words("shortcuts")),
-    h("dl", {}, ...SHORTCUTS.flatMap((key) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
-    h("form", { method: "dialog" }, h("button", {}, words("close"))));
+  const speed = h("p", { class: "dim" }), show = () => { speed.textContent = `robolink ${app.connection.info?.robolink?.version ?? ""} · ${stamps.length} ${words("frames")}/s`; };
+  const timer = setInterval(show, 500);
+  const keys = SHORTCUTS.filter((key) => !(app.isBag || app.isLearn) || !["space", "d", "g", "i"].includes(key));
+  const dialog = h("dialog", { class: "help", onclose: () => { clearInterval(timer); dialog.remove(); } }, h("h2", {}, words("shortcuts")),
+    h("dl", {}, ...keys.flatMap((key) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
+    speed, h("form", { method: "dialog" }, h("button", {}, words("close"))));
+  show();
   document.body.append(dialog);
   dialog.showModal();
 }
 
+/** Drive by keys: the stick has the keyboard. */
+function drive() {
+  if (app.isBag || app.isLearn) return;
+  const { element, loaded } = app.layout.open("teleop");
+  loaded.then(() => element.querySelector(".stick")?.focus());
+}
+
+/** Do what the world does for a key, wherever the keyboard is. */
+function inWorld(event) { app.layout.open("world").loaded.then(() => app.layout.panel("world")?.keys(event)); }
+
 function shortcut(event) {
   if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-  const acts = { "?": help, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
+  const acts = { "?": help, a: () => document.getElementById("add").focus(), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => !app.connection.isReadOnly && !app.isBag && app.stop() };
+  if (!app.isBag && !app.isLearn) acts.g = acts.i = inWorld;
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
-  // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
-  if (!act || (event.key === " " && event.target.matches("button:focus-visible, summary"))) return;
+  if (!act || (event.key === " " && event.target instanceof HTMLButtonElement)) return;
   event.preventDefault();
-  if (!event.repeat || event.key === " ") act();
+  if (!event.repeat || event.key === " ") act(event);
 }
 
 /** Figures that the page measures of itself: frames in the last second, and milliseconds of work in each. */
@@ -202,15 +243,14 @@ function begin() {
   document.body.append(app.notes);
   showTheme();
   addRecordButton(app);
-  app.stopping = new Stop(app);
   app.timeline = new Timeline(document.getElementById("timeline"), app);
   buildHeader();
   app.layout = new Layout(document.getElementById("panels"), app);
-  app.on("pick", (topic, path) => { if (!app.layout.has("plot")) app.layout.add("plot", { series: [{ topic, path }] }); });
+  app.on("pick", (topic, path) => app.layout.open("plot", ({ series = [], ...more }) => ({ ...more, series: [...series, { topic, path }] }), false));
   for (const [name, stays] of [["/tf", false], ["/tf_static", true]]) {
     app.listen(name, { every: (view, time, topic) => { const message = topic.decode(view); if (message?.transforms) app.tf.add(message, stays ? Infinity : time); } });
   }
-  connection.on("info", showState);
+  connection.on("info", () => { if (systemName() !== document.querySelector("h1").textContent) buildHeader(); else showState(); });
   let told = ""; // language of the exercises, which the page speaks, too
   connection.on("learn", ({ language }) => {
     if (language === told) return;
@@ -227,7 +267,6 @@ function begin() {
   connection.on("status", ({ level, message }) => { if (level > 0) app.tell(message, level > 1); });
   addEventListener("keydown", shortcut);
   addEventListener("pagehide", () => app.remember());
-  setInterval(() => { document.getElementById("speed").textContent = `${stamps.length} ${words("frames")}/s`; }, 1000);
   connection.open();
   requestAnimationFrame(frame);
 }

@@ -32,7 +32,9 @@ export class Timeline {
     this.speeds = h("select", { "aria-label": words("speed"), title: words("speed"), id: "rate",
       onchange: () => this._control({ speed: Number(this.speeds.value) }) },
       ...SPEEDS.map((each) => h("option", { value: each, selected: each === (this.bag?.speed ?? 1) }, `${each}×`)));
-    this.footer.replaceChildren(this.toggleButton, this.slider, this.label, this.bag ? this.speeds : this.live);
+    const about = this.bag && h("span", { id: "about" }, begun(this.bag));
+    this.footer.replaceChildren(this.toggleButton, about ?? "", this.slider, this.label, this.bag ? this.speeds : this.live);
+    document.querySelector(this.bag ? "header" : "main").after(this.footer); // a bag's is what one comes for: at the top
     this._show();
   }
 
@@ -105,6 +107,12 @@ export class Timeline {
     this.label.textContent = this.bag ? `${seconds(at - start)} / ${seconds(end - start)}`
       : time.live ? "" : words("ago", { seconds: ((end - at) / 1000).toFixed(1) });
   }
+}
+
+/** Date and time at which a bag begins, and how long it is. */
+function begun({ start, end }) {
+  const when = start < 1e11 ? [] : [new Date(start).toLocaleString(document.documentElement.lang, { dateStyle: "medium", timeStyle: "short" })]; // a simulation's time begins at 0
+  return [...when, `${((end - start) / 1000).toFixed(1)} s`].join(" · ");
 }
 
 function seconds(ms) {

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import itertools
+import os
 import queue
 import struct
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -16,6 +17,7 @@ from robolink.exceptions import RobolinkError, ServiceError, SessionReplacedErro
 from robolink.graph.endpoint import timed_arrival
 from robolink.graph.graph import EVERY
 from robolink.message import Service
+from robolink.networks.request import requested
 from robolink.node import Node
 from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
@@ -145,6 +147,8 @@ class LiveSource:
         self._following: list[Handle] = []
         self._announced: set[str] = set()
         self.caller = Caller(node)
+        self.held: Counter[str] = Counter()
+        """Topics on which no client may drive, with the number of emergency stops that say so."""
         self._clock_channel: Channel | None = None
         self._clock = self._shown_clock = 0
         self.followers: list[Callable[[], object]] = []
@@ -402,7 +406,8 @@ class LiveSource:
 
     def information(self) -> dict[str, Any]:
         """Return fields of `serverInfo`."""
-        return {"robolink": {"bag": None, "domain": self.context.get_domain_id()}}
+        network = requested(None, os.environ).value
+        return {"robolink": {"bag": None, "domain": self.context.get_domain_id(), "network": network[:120]}}
 
     def close(self) -> None:
         """Let go of everything."""

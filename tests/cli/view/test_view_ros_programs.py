@@ -15,7 +15,7 @@ from robolink.testing import System
 from robolink.workspace import find_executable, load_node, program_names
 from tests.support.commands import Command
 
-LAYOUT = Path(view.__file__).parents[2] / "view/page/layout.js"
+LAYOUT = Path(view.__file__).parents[2] / "view/page/layouts.js"
 PROGRAMS = sorted(name for name in program_names() if name.startswith(("rqt", "rviz")))
 
 

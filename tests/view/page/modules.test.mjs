@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { Connection } from "../../../robolink/view/page/connection.js";
-import { PANELS, restored, withAsked } from "../../../robolink/view/page/layout.js";
+import { asked, KINDS, kindOf, layoutOf, PANELS, recalled, restored, tabsOf } from "../../../robolink/view/page/layouts.js";
 import { at, leaf } from "../../../robolink/view/page/panels/tree.js";
 import { MINUTE, Ring } from "../../../robolink/view/page/ring.js";
 import { compose, Frames, IDENTITY, inverse, poseOf, yawOf } from "../../../robolink/view/page/tf.js";
@@ -117,23 +117,57 @@ test("what ran before the connection was lost is not shown any more", () => {
   assert.deepEqual([connection.graph.nodes, connection.graph.types.size, connection.graph.published.size, told], [[], 0, 0, 2]);
 });
 
-test("a layout of nonsense is the default one", () => {
-  const first = restored(null);
-  for (const text of ["", "{", "[]", '{"columns": 7}', '{"columns": [{"cells": 3}]}']) assert.deepEqual(restored(text), first, text);
-  assert.deepEqual(restored('{"columns": [{"width": "x", "cells": [{"id": "nothing"}]}]}'), { columns: [] });
-  assert.ok(first.columns.flatMap(({ cells }) => cells).every(({ id }) => PANELS.includes(id)));
+const NOTHING = { robots: 0, command: undefined, twist: "", images: false, turtle: false, spatial: false };
+const ROBOT = { ...NOTHING, robots: 1, command: "/r/cmd_vel", spatial: true };
+const ids = (model) => model.columns.map(({ cells }) => cells.map(({ tabs }) => tabs.map(({ id }) => id).join("|")).join(" / "));
+
+test("the kind of a system follows from what it has", () => {
+  for (const [more, kind] of [
+    [{ isLearn: true, isEmpty: true }, "learn"], [{ isBag: true, images: true }, "bag"], [{ isEmpty: true }, "empty"], [{}, "topics"], [{ robots: 1 }, "drive"],
+    [{ command: "/cmd_vel" }, "drive"], [{ command: "/cmd_vel", images: true }, "camera"], [{ robots: 2, images: true }, "robots"], [{ robots: 2, turtle: true, command: "/t/cmd_vel" }, "drive"],
+  ]) assert.equal(kindOf({ ...NOTHING, ...more }), kind, JSON.stringify(more));
 });
 
-test("an address asks for panels: alone in a new browser, beside what is there else", () => {
-  const ids = (model) => model.columns.map(({ cells }) => cells.map(({ id }) => id).join());
-  const kept = restored('{"columns": [{"width": 1, "cells": [{"id": "log"}]}, {"width": 2, "cells": [{"id": "plot"}]}]}');
-  for (const [model, hash, expected] of [
-    [null, "", ids(restored(null))], [null, "#turtlesim+services", ["turtlesim", "services"]], [null, "#../../x+nothing", ids(restored(null))],
-    [kept, "", ["log", "plot"]], [kept, "#graph", ["graph", "log", "plot"]], [kept, "#plot+log", ["log", "plot"]],
-  ]) assert.deepEqual(ids(withAsked(model, hash)), expected, hash);
-  const topics = (model, hash) => withAsked(model, hash).columns.flatMap(({ cells }) => cells.map(({ options }) => options.topic));
-  assert.deepEqual(topics(null, "#images:/a/b+log"), ["/a/b", undefined]);
-  assert.deepEqual(topics(kept, "#plot:/c"), [undefined, "/c"]);
+test("each kind has a layout of panels that there are, on a phone too", () => {
+  for (const kind of KINDS) {
+    for (const isPhone of [false, true]) {
+      for (const found of [NOTHING, ROBOT, { ...ROBOT, images: true, turtle: true }]) assert.ok(tabsOf(layoutOf(kind, found, isPhone)).every(({ id }) => PANELS.includes(id)), kind);
+      assert.equal(layoutOf(kind, ROBOT, isPhone).columns.length === 0, kind === "empty");
+    }
+  }
+  assert.deepEqual(ids(layoutOf("drive", ROBOT, false)), ["world", "topics|log|teleop / plot"]);
+  assert.deepEqual(ids(layoutOf("camera", { ...ROBOT, images: true }, true)), ["world|images / teleop", "topics", "plot", "log"]);
+  const [messages, plot] = ["topics", "plot"].map((id) => tabsOf(layoutOf("drive", { ...ROBOT, twist: "twist." }, false)).find((tab) => tab.id === id).options);
+  assert.deepEqual([messages.topic, plot.series], ["/r/cmd_vel", [{ topic: "/r/cmd_vel", path: "twist.linear.x" }, { topic: "/r/cmd_vel", path: "twist.angular.z" }]]);
+});
+
+test("a layout of nonsense is not recalled", () => {
+  const own = layoutOf("drive", ROBOT, false);
+  for (const kept of [null, undefined, 7, [], { columns: 7 }, { columns: [{ cells: 3 }] }, { changed: true, columns: [{ cells: [{ id: "log" }] }] }]) {
+    assert.equal(restored(kept), null);
+    assert.equal(recalled(kept, own), own);
+  }
+  assert.deepEqual(restored({ columns: [{ width: "x", cells: [{ tabs: [{ id: "nothing" }] }] }] }), { columns: [] });
+});
+
+test("a layout that a person changed is recalled; of one that nobody changed only what its panels show", () => {
+  const own = () => layoutOf("drive", ROBOT, false), text = (model) => JSON.parse(JSON.stringify(model)), plot = (model) => tabsOf(model).find(({ id }) => id === "plot").options;
+  const kept = text(own());
+  plot(kept).seconds = 5;
+  assert.deepEqual(ids(recalled({ ...kept, changed: false }, own())), ids(own()));
+  assert.equal(plot(recalled({ ...kept, changed: false }, own())).seconds, 5);
+  const other = () => layoutOf("drive", { ...ROBOT, command: "/s/cmd_vel" }, false); // another robot's fields are its own
+  assert.equal(plot(recalled({ ...kept, changed: false }, other())).series[0].topic, "/s/cmd_vel");
+  kept.columns.reverse();
+  assert.deepEqual(ids(recalled({ ...kept, changed: true }, own())), ids(own()).reverse());
+  assert.equal(plot(recalled({ ...kept, changed: true }, own())).seconds, 5);
+  assert.equal(plot(recalled({ ...kept, changed: true }, other())).series[0].topic, "/s/cmd_vel");
+});
+
+test("an address asks for panels, side by side", () => {
+  for (const [hash, expected] of [["#turtlesim+services", ["turtlesim", "services"]], ["#graph", ["graph"]]]) assert.deepEqual(ids(asked(hash)), expected, hash);
+  for (const hash of ["", "#", "#../../x+nothing"]) assert.equal(asked(hash), null);
+  assert.deepEqual(tabsOf(asked("#images:/a/b+log")).map(({ options }) => options.topic), ["/a/b", undefined]);
 });
 
 test("values at paths, and in one line", () => {

@@ -33,7 +33,7 @@ PIXELS = """((name) => {
   const [r, g, b] = wanted.getImageData(0, 0, 1, 1).data;
   const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
   let count = 0;
-  for (let i = 0; i < data.length; i += 4) count += data[i] === r && data[i + 1] === g && data[i + 2] === b;
+  for (let i = 0; i < data.length; i += 4) count += [r, g, b].every((each, k) => Math.abs(data[i + k] - each) < 4);
   return count;
 })"""
 """JavaScript function of a colour's name: how many pixels of the world have it."""

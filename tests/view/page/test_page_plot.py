@@ -91,7 +91,7 @@ def plotted_paths(page: Page) -> None:
 def series(*paths: str) -> dict[str, Any]:
     """A layout with a plot of fields of /cmd_vel."""
     options = {"series": [{"topic": "/cmd_vel", "path": path} for path in paths]}
-    return {"columns": [{"width": 50, "cells": [{"id": "plot", "height": 100, "options": options}]}]}
+    return {"columns": [{"width": 50, "cells": [{"tabs": [{"id": "plot", "options": options}]}]}]}
 
 
 def test_a_field_is_dragged_from_the_tree(browser: Browser) -> None:
@@ -157,4 +157,5 @@ def test_a_plot_is_cheap_and_remembered(browser: Browser) -> None:
         assert least < 100, "180,000 points in a frame"
         browser.open(page.view.address)
         browser.wait("document.querySelectorAll('.chip').length == 6")
-        assert json.loads(browser.js("localStorage.getItem('robolink.layout')"))["columns"]
+        kept = json.loads(browser.js("localStorage.getItem('robolink.layouts')"))
+        assert len(kept[browser.js("robolink.layout.kind")]["columns"]) == 1

@@ -153,17 +153,17 @@ def test_names_and_types_are_whole_where_there_is_room(browser: Browser) -> None
 
 
 def test_a_topic_is_opened_with_its_branches_unfolded(browser: Browser) -> None:
-    columns = [
-        {"width": 50, "cells": [{"id": "topics", "height": 100, "options": {"topic": "/cmd_vel", "open": True}}]}
-    ]
-    with opened(browser, layout={"columns": columns}) as page:
+    tab = {"id": "topics", "options": {"topic": "/cmd_vel", "open": True}}
+    with opened(browser, layout={"columns": [{"width": 50, "cells": [{"tabs": [tab]}]}]}) as page:
         publish(page)
         assert tree(page, "linear.x") == ["linear", "x 0.5", "y 0", "z 0", "angular", "x 0", "y 0", "z 0"]
         assert browser.js("document.querySelector('.detail p').textContent") == "geometry_msgs/msg/Twist"
         browser.click("[data-path=angular]")
         browser.wait("!document.querySelector('[data-path=\"angular.x\"]')")
-        options = "JSON.parse(localStorage['robolink.layout']).columns[0].cells[0].options"
-        assert browser.js(options)["open"] == ["linear"]  # and the browser remembers it
+        kept = json.loads(browser.js("localStorage['robolink.layouts']"))[browser.js("robolink.layout.kind")]
+        assert kept["columns"][0]["cells"][0]["tabs"][0]["options"]["open"] == [
+            "linear"
+        ]  # and the browser remembers it
 
 
 def test_a_bag_has_ages_in_its_time_and_no_publishers(browser: Browser, tmp_path: Path) -> None:

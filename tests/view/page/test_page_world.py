@@ -198,7 +198,6 @@ def test_the_view_follows_a_robot(browser: Browser) -> None:
     with opened(browser, "world") as page:
         publish_all(page.node)
         look(page)
-        browser.click(".layers-button")
         browser.choose("select.follow", "robot")
         browser.wait(f"Math.abs({WORLD}.view.x - 0.5) < 0.01")
         tf = page.node.create_publisher(TFMessage, "/tf", LATCHED)
@@ -210,6 +209,7 @@ def test_layers_are_switched_and_stay_so(browser: Browser) -> None:
     with opened(browser, "world") as page:
         publish_all(page.node)
         look(page)
+        browser.wait("robolink.layout.kind == 'drive'")
         browser.click(".layers-button")
         browser.click(".layers input[value='/scan']")
         browser.wait(f"!{page.topic('/scan')}.subscription")
@@ -230,7 +230,7 @@ def test_a_click_and_a_drag_give_a_pose(browser: Browser, key: str, topic: str, 
         publish_all(page.node)
         page.node.create_subscription(kind, topic, heard.append, 10)
         look(page)
-        browser.click(f"{page.panel('world')} h2")
+        browser.click("[data-tab=world]")
         browser.press(key)
         browser.wait(f"{WORLD}.tool")
         browser.drag(page.world(1.0, 0.5), page.world(1.0, 1.5))
@@ -248,9 +248,6 @@ def test_another_fixed_frame_measures_in_it(browser: Browser) -> None:
     with opened(browser, "world") as page:
         publish_all(page.node)
         look(page)
-        browser.click(f"{page.panel('world')} canvas")
-        browser.press("m")
-        browser.wait("document.querySelector('select.fixed')?.options.length > 2")
         browser.choose("select.fixed", "odom")
         browser.wait("robolink.tf.fixed == 'odom'")
         browser.move(page.world(0.0, 0.0))
