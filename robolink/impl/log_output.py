@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import os
 import re
 import sys
@@ -14,7 +13,7 @@ from typing import NamedTuple, TextIO, TypeAlias
 
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.system import clocks
-from robolink.system.terminal import fit
+from robolink.system.terminal import fit, knows_colours
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 
@@ -108,7 +107,7 @@ class Console:
             return
         text = self._format(record)
         colour = _COLOURS.get(record.severity)
-        if colour and (_is_colour_terminal(stream) if self._coloured is None else self._coloured):
+        if colour and (stream.isatty() and knows_colours() if self._coloured is None else self._coloured):
             text = f"{colour}{text}\x1b[0m"
         _write_line(stream, text)
 
@@ -129,22 +128,6 @@ def _write_line(stream: TextIO, text: str) -> None:
         except UnicodeEncodeError:
             stream.write(text.encode("ascii", "backslashreplace").decode() + "\n")
         stream.flush()
-
-
-def _is_colour_terminal(stream: TextIO) -> bool:
-    return stream.isatty() and _terminal_knows_colours()
-
-
-def _terminal_knows_colours() -> bool:
-    if sys.platform == "win32":
-        return _escapes_switched_on()
-    return os.environ.get("TERM") != "dumb"
-
-
-@functools.cache
-def _escapes_switched_on() -> bool:
-    """Switch on escape sequences of Windows' console, which an empty command does; once, since it takes a while."""
-    return os.system("") == 0
 
 
 _TOKENS: dict[str, Callable[[Record], str]] = {

@@ -47,6 +47,7 @@ def launch(
     shows_view: bool = False,
     enclave: str = "",
     notes: Iterable[str] = (),
+    where_to_look: str = "",
     direct: Direct | None = None,
 ) -> int:
     """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
@@ -64,6 +65,7 @@ def launch(
         enclave: Enclave with whose keys it is recorded, viewed and waited for, where security is on. '' is `/`, and for
             the launcher that of the file's first node that has one.
         notes: Lines of the launch file's own, printed first.
+        where_to_look: Line about where the system is seen, printed before them; '' prints none.
         direct: Maker of the director that starts and stops more while the system runs; None has none.
 
     Returns:
@@ -97,8 +99,11 @@ def launch(
         director, logs = _director(direct, watches, stack), RunLogs(path.stem)
         supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
         nodes, domain = [each.full_name for each in entries if each.source is not None], _domain()
-        for line in (*notes, *beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
+        for line in ([where_to_look] if where_to_look else []) + list(notes):
             supervisor.say(line)
+        warn = functools.partial(supervisor.say, severity="WARN")
+        for line in (*beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
+            warn(line)
         if server is not None:
             server.is_end_requested = lambda: supervisor.is_end_requested
         parts: list[contextlib.AbstractContextManager[object]] = [
@@ -110,7 +115,7 @@ def launch(
             from robolink.supervisor.monitoring.resources import Figures
 
             parts.append(Figures(supervisor.status, say=supervisor.say))
-        watch = waiting(held, supervisor.release, supervisor.say, enclave=enclave or _enclave(entries))
+        watch = waiting(held, supervisor.release, warn, enclave=enclave or _enclave(entries))
         return supervisor.run(duration, [*parts, watch])
 
 

@@ -17,6 +17,8 @@ from typing import Literal, TypeAlias
 
 RespawnWhen: TypeAlias = Literal["never", "on_failure", "always"]
 OnExit: TypeAlias = Literal["shutdown", "ignore"]
+Severity: TypeAlias = Literal["DEBUG", "INFO", "WARN", "ERROR", "FATAL"]
+"""Severity of a line, in ROS's words."""
 NO_LIMIT = 10**9
 """Number of restarts, and of seconds, that stands for no limit."""
 
@@ -139,9 +141,10 @@ class Ask:
 
 @dataclass(frozen=True)
 class Say:
-    """Action: print a line to the user."""
+    """Action: print a line to the user; `severity` is for its colour, and no part of what is decided."""
 
     text: str
+    severity: Severity = field(default="INFO", compare=False)
 
 
 Action: TypeAlias = "Start | Ask | Say"
@@ -254,7 +257,7 @@ class Policy:
         if self.step is not None:
             return []
         self._code = code
-        return [Say(reason), *self._harder(now)]
+        return [Say(reason, "ERROR" if code else "INFO"), *self._harder(now)]
 
     def released(self, name: str, now: float) -> list[Action]:
         """Handle that the conditions of a held process are met."""
@@ -273,7 +276,7 @@ class Policy:
             return self._ended_on_the_way(how, returncode, is_orderly(returncode, step or Step.INTERRUPT, cause))
         if step is None:
             return self._ended(each, how, ran, now)
-        report: list[Action] = [] if is_orderly(returncode, step, cause) else [Say(how)]
+        report: list[Action] = [] if is_orderly(returncode, step, cause) else [_end(how, returncode)]
         if is_restart:
             return [*report, *self._start(each, now)]
         if self.is_over:
@@ -366,20 +369,20 @@ class Policy:
             recent = each.respawned if rule.most < NO_LIMIT else []  # all of them would fill the memory
             each.respawned = [then for then in recent if now - then < rule.within]
             if len(each.respawned) < rule.most:
-                return [Say(f"{how}{mark} {_respawn(each, ran, now)}")]
+                return [_end(f"{how}{mark} {_respawn(each, ran, now)}", code)]
             within = "" if rule.within == NO_LIMIT else f" within {rule.within:g} s"
-            how += f"{mark} given up after {rule.most} new starts{within}"
+            how += f"{mark} given up after {rule.most} new start{'s' * (rule.most != 1)}{within}"
         if each.rules.on_exit == "ignore":
             self._code = exit_code(code) if self.is_over else None
-            return [Say(how), *self._only_held(now)]
+            return [_end(how, code), *self._only_held(now)]
         self._code = exit_code(code)
-        return [Say(how), *self._harder(now)]
+        return [_end(how, code), *self._harder(now)]
 
     def _ended_on_the_way(self, how: str, returncode: int, is_fine: bool) -> list[Action]:
         if not self._is_requested or is_fine:
             return []
         self._code = self._code or exit_code(returncode)
-        return [Say(how)]
+        return [_end(how, returncode)]
 
     def _only_held(self, now: float) -> list[Action]:
         """Report it if all that is left waits for conditions that may never be met; end if they never will."""
@@ -388,10 +391,11 @@ class Policy:
             return []
         vain = {each.name: gone for each in left if (gone := self._ended_for(each))}
         if len(vain) < len(left):
-            return [Say(f"nothing runs any more; not started yet: {', '.join(each.name for each in left)}")]
+            names = ", ".join(each.name for each in left)
+            return [Say(f"nothing runs any more; not started yet: {names}", "WARN")]
         self._code = 1
         reason = "; ".join(f"{name} waits for {gone}, which has ended" for name, gone in vain.items())
-        return [Say(f"nothing runs any more, and {reason}"), *self._harder(now)]
+        return [Say(f"nothing runs any more, and {reason}", "ERROR"), *self._harder(now)]
 
     def _ended_for(self, held: Tracked) -> str:
         """Return the ended process for which a held one waits, directly or through others; '' for none."""
@@ -430,12 +434,12 @@ class Policy:
             each.step, late = Step(each.step + 1), [self._late(each.name)]
         if each.step is Step.GIVE_UP:  # it stays as it is, and may still end
             each.step, each.due = Step.KILL, None
-            return [Say(f"{each.name} cannot be killed")]
+            return [Say(f"{each.name} cannot be killed", "ERROR")]
         each.due = now + self._patience
         return [*late, Ask(each.name, each.step)]
 
     def _late(self, *names: str) -> Say:
-        return Say(f"still running after {self._patience:g} s: {', '.join(names)}")
+        return Say(f"still running after {self._patience:g} s: {', '.join(names)}", "WARN")
 
 
 def _tracked(name: str, rules: Rules) -> Tracked:
@@ -446,6 +450,11 @@ def _move(each: Tracked, state: State, now: float) -> None:
     """Set the state of a process and clear its plans."""
     is_restart = each.is_restart and state == "stopping"
     each.state, each.since, each.due, each.step, each.is_restart = state, now, None, None, is_restart
+
+
+def _end(how: str, returncode: int) -> Say:
+    """Return the line about the end of a process."""
+    return Say(how, "ERROR" if returncode else "INFO")
 
 
 def _why(each: Tracked, returncode: int, cause: str, ran: float) -> str:

@@ -17,7 +17,7 @@ from typing import TextIO, TypeAlias
 from robolink.exceptions import NotFoundError
 from robolink.supervisor.director import Add, Director, Request, Signal, Stop, Tell
 from robolink.supervisor.events import Status
-from robolink.supervisor.policy import Action, Ask, Policy, Say, Start, Step
+from robolink.supervisor.policy import Action, Ask, Policy, Say, Severity, Start, Step
 from robolink.supervisor.processes.affinity import set_affinity
 from robolink.supervisor.processes.guardian import Guardian
 from robolink.supervisor.processes.lifeline import Lifeline
@@ -87,7 +87,7 @@ class Supervisor:
         self._lock = threading.Lock()  # held whenever the policy is called
         self._director = None if director is None else director(self)
         self._has_begun = self._is_end_reported = self._is_running = False
-        self._said_before: list[str] = []
+        self._said_before: list[Say] = []
         self.leavings: list[Path] = []
         """Files that the guardian removes if this process is killed; fill it before or while entering `beside`."""
         self.is_end_requested = False
@@ -154,12 +154,15 @@ class Supervisor:
         """Call `act` with the time in the loop, where the director is called, and carry out what it returns."""
         self._events.put(lambda now: self._directed(act(now), now))
 
-    def say(self, text: str) -> None:
-        """Print `text` to the user as a line of the launcher's own; after the end it is lost."""
+    def say(self, text: str, severity: Severity = "INFO") -> None:
+        """Print `text` to the user as a line of the launcher's own, in the colour of its `severity`.
+
+        After the end it is lost.
+        """
         if self._is_running:
-            self._events.put(lambda now: [Say(text)])
+            self._events.put(lambda now: [Say(text, severity)])
         else:
-            self._said_before.append(text)
+            self._said_before.append(Say(text, severity))
 
     def status(self) -> list[Status]:
         """Return the current state of each process."""
@@ -186,13 +189,13 @@ class Supervisor:
 
     def _unread(self, reason: str) -> None:
         """Handle a broken output pipe: it ends the system, as it ends any program in a pipe."""
-        self.say(f"nobody reads the output any more: {reason}")
+        self.say(f"nobody reads the output any more: {reason}", "WARN")
         self.stop()
 
     def _tell_first(self) -> None:
         """Print the lines that were said before `run`, above all that follows from the begin."""
-        for text in self._said_before:
-            self._dispatcher.say(text)
+        for each in self._said_before:
+            self._dispatcher.say(each.text, each.severity)
         self._is_running = True
 
     def _begin(self, duration: float | None) -> list[Action]:
@@ -264,7 +267,7 @@ class Supervisor:
             if isinstance(action, Start):
                 self._start(self._processes[action.name])
             elif isinstance(action, Say):
-                self._dispatcher.say(action.text)
+                self._dispatcher.say(action.text, action.severity)
             elif action.name in self._children:
                 self._children[action.name].ask(action.step)
         if requests:
@@ -282,7 +285,7 @@ class Supervisor:
         self._guardian.guard(child.group)
         self._children[name] = child
         if process.cpu and (why_not := set_affinity(child.group, process.cpu)):
-            self._dispatcher.say(f"{name}: {why_not}")
+            self._dispatcher.say(f"{name}: {why_not}", "WARN")
         self._dispatcher.started(name, child.group, self._policy.processes[name].restarts)
         if self._director is not None:
             pid = child.group

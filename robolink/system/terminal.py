@@ -43,9 +43,19 @@ def fit(text: str, *, lines: bool = True, colours: bool = False) -> str:
 
 
 def wants_colour(output: TextIO | None) -> bool:
-    """True if colours make sense in this `output`: it is a terminal, and NO_COLOR is not set."""
-    knows_colours = sys.platform != "win32" or "WT_SESSION" in os.environ or "TERM" in os.environ
-    return output is not None and output.isatty() and knows_colours and not os.environ.get("NO_COLOR")
+    """True if colours make sense in this `output`: it is a terminal that knows them, and NO_COLOR is not set."""
+    return output is not None and not os.environ.get("NO_COLOR") and output.isatty() and knows_colours()
+
+
+def knows_colours() -> bool:
+    """True if this process's terminal knows escape sequences; switches them on first in Windows' console."""
+    return _escapes_switched_on() if sys.platform == "win32" else os.environ.get("TERM") != "dumb"
+
+
+@functools.cache
+def _escapes_switched_on() -> bool:
+    """Switch on escape sequences of Windows' console, which an empty command does; once, since it takes a while."""
+    return os.system("") == 0
 
 
 def styled(text: str, style: str, output: TextIO | None) -> str:
@@ -104,7 +114,21 @@ def open_in_browser(address: str) -> bool:
     """Open an address in the browser; False where there is no screen, or no browser."""
     import webbrowser
 
-    is_remote = sys.platform not in ("win32", "darwin") and not (
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
-    return not is_remote and webbrowser.open(address)
+    return has_screen() and webbrowser.open(address)
+
+
+def has_screen() -> bool:
+    """True if a browser that is opened here is seen by who sits at the terminal."""
+    if sys.platform in ("win32", "darwin"):
+        return "SSH_CONNECTION" not in os.environ
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def ssh_tunnel(port: int) -> str:
+    """Return the command that brings a port to the computer from which somebody came here by ssh; '' if nobody did."""
+    _, _, host, ssh_port = (*os.environ.get("SSH_CONNECTION", "").split(), "", "", "", "")[:4]
+    if not host:
+        return ""
+    user = os.environ.get("USER") or os.environ.get("LOGNAME")
+    at = f"{shown(user)}@{shown(host)}" if user else shown(host)
+    return f"ssh -L {port}:localhost:{port} {f'-p {shown(ssh_port)} ' if ssh_port != '22' else ''}{at}"

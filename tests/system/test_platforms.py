@@ -27,14 +27,13 @@ from robolink.cli.shared.commands import NOUNS
 from robolink.cli.tf import tree
 from robolink.control.keyboard import WindowsKeyboard
 from robolink.extensions.optional import is_here
-from robolink.impl import log_output
 from robolink.launch import lookup
 from robolink.running import timebase
 from robolink.supervisor.policy import Step
 from robolink.supervisor.processes import affinity, process
 from robolink.supervisor.processes.process import Child
 from robolink.supervisor.reporting import logs
-from robolink.system import clocks, files
+from robolink.system import clocks, files, terminal
 from robolink.system.waits import A_WHILE
 from robolink.transport import network
 from tests.support.commands import PATIENCE
@@ -148,9 +147,9 @@ def test_a_console_is_switched_to_colours_once(monkeypatch: pytest.MonkeyPatch) 
         return 0
 
     monkeypatch.setattr(os, "system", system)
-    log_output._escapes_switched_on.cache_clear()
-    assert all(log_output._terminal_knows_colours() for _ in range(3))
-    log_output._escapes_switched_on.cache_clear()
+    terminal._escapes_switched_on.cache_clear()
+    assert all(terminal.knows_colours() for _ in range(3))
+    terminal._escapes_switched_on.cache_clear()
     assert calls == [""]
 
 

@@ -9,6 +9,9 @@ from robolink.cli.shared.output import say, tell
 if TYPE_CHECKING:
     from robolink.extensions.optional import Page
 
+PORT = 8765
+"""Default port of the page; its own module is not imported for a line."""
+
 
 def announce(server: Page, browser: bool, panels: str) -> None:
     """Print the address of the page, with who else can open it, and open it.
@@ -20,7 +23,7 @@ def announce(server: Page, browser: bool, panels: str) -> None:
     """
     # Before it is printed: a Ctrl-C that comes in an import may leave a lock of Python's behind, for which the server's
     # threads, which import as well, would wait for ever.
-    from robolink.system.terminal import open_in_browser
+    from robolink.system.terminal import open_in_browser, ssh_tunnel
 
     address = f"{server.address}#{panels}" if panels else server.address
     say(f"robolink view: {address}")
@@ -30,8 +33,20 @@ def announce(server: Page, browser: bool, panels: str) -> None:
         others = f"http://{socket.gethostname()}:{server.port}/?{address.partition('?')[2]}"
         tell(f"others on the network open {others}: whoever has the token can drive the robots")
         tell("the connection is not encrypted: who listens on the network can read the token (docs/reference/view.md)")
-    if browser and not open_in_browser(address):
-        tell("no browser here: open the address above")
+    if browser and not open_in_browser(address) and (tunnel := ssh_tunnel(server.port)):
+        tell(f"no browser here: `{tunnel}` on your own computer, and the address above opens there")
+
+
+def where_to_look() -> str:
+    """Return a line about where a system is seen from a terminal without a browser; '' if there is one, or no page."""
+    from robolink.extensions import optional
+    from robolink.system.terminal import has_screen, ssh_tunnel
+
+    if has_screen() or not optional.is_here(optional.PAGE):
+        return ""
+    tunnel = ssh_tunnel(PORT)
+    there = f", and on your own computer `{tunnel}`" if tunnel else ""
+    return f"no browser here: to see the system, `robolink view` in another shell{there}"
 
 
 def end_with_the_terminal() -> None:

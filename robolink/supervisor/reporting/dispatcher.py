@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TextIO
 
 from robolink.supervisor.events import Ended, Event, Exited, Output, Restarting, Said, Started, Stopping
-from robolink.supervisor.policy import Ask, Tracked, described, is_orderly
+from robolink.supervisor.policy import Ask, Severity, Tracked, described, is_orderly
 from robolink.supervisor.reporting.background_queue import BackgroundQueue, Troubles
 from robolink.supervisor.reporting.logs import RunLogs
 from robolink.supervisor.reporting.printer import Printer, complain
@@ -85,10 +85,10 @@ class EventDispatcher:
         self._note(f"{requests[0].step.name.lower()} {', '.join(names)}")
         self._happened(lambda now: Stopping(names, requests[0].step.name.lower(), now))
 
-    def say(self, text: str) -> None:
+    def say(self, text: str, severity: Severity = "INFO") -> None:
         """Print a line to the user; never blocks."""
         self._last_said = text
-        self._printer.say(text)
+        self._printer.say(text, severity)
         self._note(text)
         self._happened(lambda now: Said(text, now))
 
@@ -102,10 +102,10 @@ class EventDispatcher:
             lines = [f"summary: {each}" for each in lines]
         else:
             lines = []
-        if folder is not None and (code or lines):
-            lines.append(f"logs: {folder}")
         for each in lines:
-            self.say(each)
+            self.say(each, "ERROR")
+        if folder is not None and (code or lines):
+            self.say(f"logs: {folder}")
         self._note(f"exit code {code}")
         self._happened(lambda now: Ended(code, "" if folder is None else str(folder), now))
 

@@ -16,97 +16,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.supervisor.reporting.background_queue import MOST_WAITING, BackgroundQueue, Troubles
-from robolink.supervisor.reporting.printer import Printer, Writer, prefixes
+from robolink.supervisor.reporting.printer import Printer, Writer
 
 PATIENCE = 30.0
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_lines_are_prefixed_and_coloured_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    monkeypatch.setenv("TERM", "xterm")
-    for output, expected in [
-        (io.StringIO(), "[a] hi\n[b] é\ufffd\n[launch] over\n"),
-        (Terminal(), "\x1b[36m[a]\x1b[0m hi\n\x1b[33m[b]\x1b[0m é\ufffd\n\x1b[32m[launch]\x1b[0m over\n"),
-    ]:
-        printer = Printer(output, ["a", "b"])
-        printer.line("a", b"hi\r\n")
-        printer.line("b", b"\xc3\xa9\xff")
-        printer.say("over")
-        printer.close()
-        assert output.getvalue() == expected
-
-
-def test_lines_of_a_log_have_their_severitys_colour_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A node writes its log to the launcher without colours: there is no terminal at its end."""
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    monkeypatch.delenv("RCUTILS_COLORIZED_OUTPUT", raising=False)
-    monkeypatch.setenv("TERM", "xterm")
-    lines = [
-        "[WARN] [1.0] [n]: é",
-        "[ERROR] [1.0] [n]: b",
-        "[INFO] [1.0] [n]: c",
-        "[FATAL] \x1b[1mown",
-        "a [WARN] ",
-        "",
-    ]
-    shortened = ["[WARN] [n]: é", "[ERROR] [n]: b", "[INFO] [n]: c", *lines[3:]]
-    coloured = [f"\x1b[33m{shortened[0]}\x1b[0m", f"\x1b[31m{shortened[1]}\x1b[0m", *shortened[2:]]
-
-    def printed(output: io.StringIO) -> list[str]:
-        printer = Printer(output, ["a"])
-        for each in lines:
-            printer.line("a", f"{each}\n".encode())
-        printer.close(PATIENCE)
-        return [each.partition(" ")[2] for each in output.getvalue().splitlines()]
-
-    assert printed(Terminal()) == coloured
-    assert printed(io.StringIO()) == lines
-    monkeypatch.setenv("RCUTILS_COLORIZED_OUTPUT", "0")
-    assert printed(Terminal()) == shortened
-    monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "[{severity}] [{time}] [{name}]: {message}")
-    assert printed(Terminal()) == lines
-
-
-@pytest.mark.parametrize(
-    ("process", "line", "shown"),
-    [
-        ("world", "[INFO] [1795863973.050000000] [world]: robot at (1, 2)", "[INFO] robot at (1, 2)"),
-        ("ada/world", "[WARN] [1795863973.05] [ada.world]: [1.5] [x]: y", "[WARN] [1.5] [x]: y"),
-        ("world-2", "[INFO] [1795863973.05] [world]: x", "[INFO] [world]: x"),
-        ("world", "[INFO] [now] [world]: x", "[INFO] [now] [world]: x"),
-        ("world", "said [INFO] [1.5] [world]: x", "said [INFO] [1.5] [world]: x"),
-        ("a", "[INFO] [1.5] []: x", "[INFO] []: x"),
-    ],
-)
-def test_a_terminal_has_each_name_once_and_no_epoch(
-    process: str, line: str, shown: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("NO_COLOR", "1")
-    monkeypatch.delenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", raising=False)
-    for output, expected in ((Terminal(), shown), (io.StringIO(), line)):
-        printer = Printer(output, [process])
-        printer.line(process, f"{line}\n".encode())
-        printer.close(PATIENCE)
-        assert output.getvalue() == f"[{process}] {expected}\n"
-
-
-def test_no_color_is_respected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("NO_COLOR", "1")
-    output = Terminal()
-    printer = Printer(output, ["a"])
-    printer.line("a", b"hi\n")
-    printer.close()
-    assert output.getvalue() == "[a] hi\n"
-
-
-def test_every_name_has_a_colour() -> None:
-    names = [f"node{index}" for index in range(30)]
-    assert len(set(prefixes(names, has_colour=True).values())) == 30
 
 
 def test_of_what_a_terminal_obeys_a_process_may_only_set_colours() -> None:
