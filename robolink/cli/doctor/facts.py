@@ -62,6 +62,8 @@ class Seen(NamedTuple):
     """Connections to other sessions."""
     bridges: tuple[BridgeToken, ...] = ()
     """Bridges to other networks, such as DDS."""
+    stopped: bool = False
+    """True if STOP holds."""
     error: str = ""
     """Reason why the system could not be looked at; empty if it could."""
 

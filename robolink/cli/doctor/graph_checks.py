@@ -7,6 +7,8 @@ import itertools
 from collections.abc import Iterable
 
 from robolink.cli.doctor.facts import Check, Facts, Verdict, count, listed
+from robolink.cli.shared.stop import HOLDS
+from robolink.control.stop_lock import TOPIC as STOP
 from robolink.exceptions import nearest
 from robolink.qos import DurabilityPolicy
 from robolink.wire import NO_HASH, EndpointKind, EndpointToken, NodeToken
@@ -17,8 +19,8 @@ SERVICE, CLIENT = EndpointKind.SERVICE, EndpointKind.CLIENT
 Variant = tuple[str, str]
 """Name and hash of a type."""
 
-SILENT_TOPICS = ("/parameter_events", "/rosout", "/clock", "/tf_static")
-"""Topics that nodes subscribe to even without a publisher. /clock has a check of its own."""
+SILENT_TOPICS = ("/parameter_events", "/rosout", "/clock", "/tf_static", STOP)
+"""Topics that nodes subscribe to even without a publisher. /clock and STOP have checks of their own."""
 
 COMMANDS = ("_robolink_", "_ros2cli")
 """Prefixes of the names of commands' own nodes: they come and go, and nothing depends on them."""
@@ -142,6 +144,11 @@ def clock(facts: Facts) -> Verdict:
     return Verdict(f"/clock is published by {sources[0]}" if sources else "nobody uses simulated time")
 
 
+def stop(facts: Facts) -> Verdict:
+    """Check that STOP does not hold, which keeps robots from moving."""
+    return Verdict("STOP does not hold", warnings=(HOLDS,) if facts.seen.stopped else ())
+
+
 def qos(facts: Facts) -> Verdict:
     """Check that no transient-local subscription has a volatile publisher, which keeps nothing for it."""
     ends = _by_name(each for each in _endpoints(facts.seen.tokens) if each.kind in (PUBLISHER, SUBSCRIPTION))
@@ -150,7 +157,7 @@ def qos(facts: Facts) -> Verdict:
         forgetful = [each.full_node_name for each in found if each.kind is PUBLISHER and not _latched(each)]
         waiting = [each for each in found if each.kind is SUBSCRIPTION and not _is_command(each)]
         asking = [each.full_node_name for each in waiting if _latched(each)]
-        if forgetful and asking:
+        if forgetful and asking and name != STOP:  # who obeys it has a second subscription, to volatile ones
             warnings.append(
                 f"{name}: {listed(asking)} asks for what was published before (TRANSIENT_LOCAL), "
                 f"but {listed(forgetful)} keeps nothing (VOLATILE)"
@@ -211,6 +218,7 @@ GRAPH_CHECKS = (
     Check("topics", "topic", topics),
     Check("services", "service", services),
     Check("clock", "topic", clock),
+    Check("stop", "topic", stop),
     Check("qos", "middleware", qos),
     Check("distributions", "middleware", distributions),
 )

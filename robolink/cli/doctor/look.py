@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from robolink.cli.doctor.facts import ClockOffset, Seen
+from robolink.cli.shared.stop import stop_holds
 from robolink.exceptions import RobolinkError, SecurityError, WireError
 from robolink.system import clocks
 from robolink.system.waits import get_within
@@ -97,6 +98,7 @@ def _seen(transport: Transport, domain: int) -> Seen:
         clocks,
         tuple(transport.links()),
         tuple(_bridges(transport, domain)),
+        stop_holds(transport, [each for each in tokens if isinstance(each, EndpointToken)]),
     )
 
 

@@ -50,6 +50,7 @@ def list_topics(
     """List the topics that have publishers or subscriptions."""
     with looking() as context:
         found = [each for each in _ends(context) if hidden or not is_hidden(each.name)]
+        stopped = _stopped(context, found) if verbose and not count else ""
     topics = names_and_types(found)
     if count or not (verbose and topics):
         show_names(dict(topics), types=types, count=count, json=json)
@@ -58,6 +59,15 @@ def list_topics(
     else:
         say(_section("Published", "publisher", found, EndpointKind.PUBLISHER))
         say(_section("Subscribed", "subscriber", found, EndpointKind.SUBSCRIPTION))
+    if stopped:
+        tell(stopped)
+
+
+def _stopped(context: Context, ends: list[EndpointToken]) -> str:
+    """Return a line if STOP holds."""
+    from robolink.cli.shared.stop import HOLDS, stop_holds
+
+    return HOLDS if stop_holds(context.transport, ends) else ""
 
 
 def show_info(topic: str, *, verbose: bool, json: bool) -> None:

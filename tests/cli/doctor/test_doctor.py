@@ -86,7 +86,7 @@ def test_a_sound_system_passes(robot: Node, capsys: Captured) -> None:
     assert "WARN  settings        ROBOLINK_TRANSPORT=memory://" in out
     assert "ok    domains         domain 7 has 1 node\n" in out
     assert out.endswith(
-        "\n19 of 21 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/reference/troubleshooting.md\n"
+        "\n20 of 22 checks passed, 1 warning, 1 not known\n\nBy what one sees: docs/reference/troubleshooting.md\n"
     )
 
 
@@ -125,7 +125,7 @@ def test_what_is_wrong_fails_and_is_named(robot: Node, capsys: Captured) -> None
     assert "FAIL  topic types     /chatter: /lab/robot publishes std_msgs/msg/String, /lab/robot subscribes to" in out
     assert "FAIL  service types   /lamp: " in out
     assert "WARN  qos             /chatter: " in out
-    failed = "\n2/21 check(s) failed\n\nFailed modules: middleware\n"
+    failed = "\n2/22 check(s) failed\n\nFailed modules: middleware\n"
     assert out.endswith(f"{failed}By what one sees: docs/reference/troubleshooting.md\n")
 
 

@@ -160,6 +160,19 @@ def test_a_latched_subscription_of_a_volatile_publisher_is_a_warning() -> None:
     assert graph_checks.qos(seeing(end(PUBLISHER, "/map", qos=latched), end(SUBSCRIPTION, "/map"))).level == OK
 
 
+def test_stop_that_holds_is_a_warning_with_the_way_to_release_it() -> None:
+    assert graph_checks.stop(seeing()) == Verdict("STOP does not hold")
+    (found,) = graph_checks.stop(seeing(stopped=True)).warnings
+    assert "robolink topic pub --once /e_stop Bool 'data: false'" in found
+
+
+def test_who_obeys_stop_waits_for_nobody_and_hears_volatile_publishers_too() -> None:
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    ends = [end(SUBSCRIPTION, "/e_stop", "base", qos=each) for each in (latched, PLAIN)]
+    assert graph_checks.topics(seeing(*ends)).level == OK
+    assert graph_checks.qos(seeing(*ends, end(PUBLISHER, "/e_stop", "button"))).level == OK
+
+
 def test_malformed_announcements_are_shown_in_part_and_counted() -> None:
     found = graph_checks.announcements(
         seeing(malformed=tuple(f"@ros2_lv/\x1b[2J{each}" + "x" * 9000 for each in range(50)))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,9 +14,11 @@ from robolink import Node
 from robolink.cli.main import _parsed, main
 from robolink.cli.shared import complete
 from robolink.cli.topic import options as topic_options
+from robolink.control.stop_lock import QOS as STOP
+from robolink.control.stop_lock import StopLock
 from robolink.duration import Duration
 from robolink.interfaces.geometry_msgs.msg import Twist
-from robolink.interfaces.std_msgs.msg import Int32, String
+from robolink.interfaces.std_msgs.msg import Bool, Int32, String
 from robolink.message import type_hash
 from robolink.qos import HistoryPolicy, LivelinessPolicy, QoSProfile, ReliabilityPolicy
 from robolink.wire import BridgeToken, EndpointKind, format_bridge, format_token, gid_of
@@ -55,6 +59,36 @@ def test_a_list_in_full_has_two_sections(node: Node, capsys: Captured) -> None:
         " * /cmd_vel [geometry_msgs/msg/Twist] 1 subscriber",
         "",
     ]
+
+
+def test_a_list_in_full_says_that_stop_holds_and_how_to_release_it(node: Node, capsys: Captured) -> None:
+    holder = node.create_publisher(Bool, "/e_stop", STOP)
+    for held in (True, False, True):
+        holder.publish(Bool(data=held))
+        main(["topic", "list", "-v"])
+        told = capsys.readouterr().err
+        assert ("STOP holds (/e_stop)" in told) is held
+    (release,) = re.findall(r"robolink (topic pub .*) releases it", told)
+    lock = StopLock(node, lambda _: None)
+    with spinning(node):
+        wait_until(lambda: lock.held)
+        assert main(shlex.split(release)) == 0
+        wait_until(lambda: not lock.held)
+    holder.destroy()
+    main(["topic", "list", "-v", "--json"])
+    assert not capsys.readouterr().err
+
+
+def test_of_several_who_keep_stop_the_last_counts_and_nonsense_does_not(node: Node, capsys: Captured) -> None:
+    one, other, third = (node.create_publisher(Bool, "/e_stop", STOP) for _ in range(3))
+    other.publish(Bool(data=False))
+    third.publish(b"nonsense")
+    one.publish(Bool(data=True))
+    main(["topic", "list", "-v"])
+    assert "STOP holds" in capsys.readouterr().err
+    other.publish(Bool(data=False))
+    main(["topic", "list", "-v"])
+    assert "STOP holds" not in capsys.readouterr().err
 
 
 def test_programs_get_numbers_too(node: Node, capsys: Captured) -> None:
