@@ -1,0 +1,122 @@
+"""A launched system with its page, a node that sends commands at 50 Hz, and a record of how fast the robot goes."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import NamedTuple
+
+from robolink import Context, Node
+from robolink.control.stop_lock import QOS, TOPIC
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav_msgs.msg import Odometry
+from robolink.interfaces.std_msgs.msg import Bool
+from tests.support.commands import Command
+from tests.support.view_clients import until
+
+PERIOD = 0.02
+"""Period of the commands of another node, in seconds."""
+
+STANDS = 1e-3
+"""Speed below which a robot stands, in m/s and rad/s."""
+
+CIRCLE = Twist(linear=Vector3(x=0.2), angular=Vector3(z=1.0))
+"""Command that needs little room."""
+
+
+class Speed(NamedTuple):
+    """Speed of the robot when a message arrived: the larger of m/s and rad/s."""
+
+    at: float
+    value: float
+
+
+class Stage:
+    """A launched system, and a view of it whose process can be killed.
+
+    Args:
+        domain: Domain of all of it.
+        name: Name of the launch file.
+    """
+
+    def __init__(self, domain: int, name: str) -> None:
+        self.domain, self.name = domain, name
+        self.launch = Command(domain, "launch", name, merged=True)
+        self.view = self.open_view()
+        self.context = Context()
+        self.context.init(args=[], domain_id=domain, initialize_logging=False)
+        self.node = Node("other", context=self.context)
+        self.speeds: list[Speed] = []
+        self.node.create_subscription(Odometry, "/odom", self._on_odometry, 100)
+        self.said: list[bool] = []
+        self.node.create_subscription(Bool, TOPIC, lambda each: self.said.append(each.data), QOS)
+        self._commands = self.node.create_publisher(Twist, "/cmd_vel", 10)
+        self._ended = threading.Event()
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor.add_node(self.node)
+        self._threads = [threading.Thread(target=each) for each in (self._executor.spin, self._send)]
+        for each in self._threads:
+            each.start()
+
+    def open_view(self) -> Command:
+        """Start a server of the page."""
+        return Command(self.domain, "view", "--no-browser", "--port", "0", merged=True)
+
+    def kill_view(self) -> None:
+        """Kill the server of the page as hard as it goes."""
+        with self.view:
+            self.view.kill()
+
+    def address(self) -> str:
+        """Return the address of the page, once it is there."""
+        line = self.view.wait_for("http://").text
+        return next(each for each in line.split() if each.startswith("http://"))
+
+    def _send(self) -> None:
+        while not self._ended.wait(PERIOD):
+            self._commands.publish(CIRCLE)
+
+    def _on_odometry(self, odometry: Odometry) -> None:
+        twist = odometry.twist.twist
+        self.speeds.append(Speed(time.monotonic(), max(map(abs, (twist.linear.x, twist.linear.y, twist.angular.z)))))
+
+    def drives(self) -> None:
+        """Wait until the robot moves."""
+        self.speeds.clear()
+        until(lambda: bool(self.speeds) and self.speeds[-1].value > 0.1, 60.0)
+
+    def stands_after(self, press: Callable[[], object], hold: float) -> float:
+        """Press STOP, and return the time in seconds after which the robot stood; it stands for `hold` seconds then."""
+        self.speeds.clear()
+        begin = time.monotonic()
+        press()
+        until(lambda: bool(self.speeds) and self.speeds[-1].value < STANDS)
+        end = time.monotonic() + hold
+        until(lambda: time.monotonic() > end, hold + 10.0)
+        seen = list(self.speeds)
+        moving = [each.at for each in seen if each.value >= STANDS and each.at > begin]
+        assert seen[-1].at > end - 0.5, "nothing more was heard of the robot"
+        return max(moving, default=begin) - begin
+
+    def close(self) -> None:
+        self._ended.set()
+        self._executor.shutdown()
+        for each in self._threads:
+            each.join(10.0)
+        self.context.try_shutdown()
+        for command in (self.view, self.launch):
+            if command.process.poll() is None:
+                command.interrupt()
+            with command:
+                command.end()
+
+    def __enter__(self) -> Stage:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,129 @@
+"""STOP in launched systems: whoever sends commands, the robot stands, and drives on when it is released.
+
+`ROBOLINK_STOP_SECONDS=10` holds it for ten seconds in each way; `python -m tests.view.page.test_page_stop` prints how
+soon the robot stood, in each system and each way.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from tests.support.browser import Browser, needs_chromium
+from tests.support.domains import free_domain
+from tests.support.stop_stage import Stage
+
+pytestmark = [pytest.mark.processes, needs_chromium]
+
+SYSTEMS = ("wander", "follow", "teleop", "track")
+STANDS_WITHIN = 0.3
+LONG, SHORT = 10.0, float(os.environ.get("ROBOLINK_STOP_SECONDS", "1"))
+"""Seconds for which it stands: once in each system, and in all other ways."""
+
+HOLDS = "robolink.stopping.held && !document.getElementById('stopped').hidden"
+
+
+@contextmanager
+def staged(name: str) -> Iterator[Stage]:
+    with free_domain() as domain, Stage(domain, name) as stage:
+        yield stage
+
+
+def open_page(browser: Browser, address: str) -> None:
+    browser.open(address)
+    browser.wait("globalThis.robolink?.connection.isOpen && robolink.layout?.isReady", 60.0)
+
+
+def leave(browser: Browser) -> None:
+    browser.open("about:blank")
+    browser.wait("location.href == 'about:blank'")
+
+
+def touch(browser: Browser, selector: str) -> None:
+    browser.touch(browser.place(selector))
+    browser.touch()
+
+
+def close_at_once(browser: Browser) -> None:
+    browser.click("#stop")
+    browser.open("about:blank")
+
+
+def release(browser: Browser) -> None:
+    browser.wait(f"{HOLDS} && !document.querySelector('#stopped .release').disabled")
+    browser.wait("performance.now() > robolink.stopping.since + 800")
+    browser.click("#stopped .release")
+    browser.wait("!robolink.stopping.held && document.getElementById('stopped').hidden")
+
+
+WAYS: dict[str, Callable[[Browser], object]] = {
+    "button": lambda browser: browser.click("#stop"),
+    "key": lambda browser: browser.press(" "),
+    "phone": lambda browser: touch(browser, "#stop"),
+    "closed": close_at_once,
+}
+"""Ways to press STOP."""
+
+
+def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float) -> dict[str, float]:
+    """Press and release STOP in every way; return after how many seconds the robot stood."""
+    address = stage.address()
+    found = {}
+    for way, press in WAYS.items():
+        phone = way == "phone"
+        browser.resize(*((390, 844) if phone else (1280, 720)), phone=phone)
+        browser.call("Emulation.setTouchEmulationEnabled", enabled=phone)
+        open_page(browser, address)
+        stage.drives()
+        found[way] = stage.stands_after(lambda press=press: press(browser), long if way == "closed" else short)  # type: ignore[misc]
+        if way == "closed":
+            open_page(browser, address)
+        release(browser)
+        stage.drives()
+    leave(browser)
+    return found
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_robot_stands_in_every_way_whoever_sends_commands(browser: Browser, name: str) -> None:
+    with staged(name) as stage:
+        found = stop_in_every_way(browser, stage, LONG, SHORT)
+    assert {way: seconds for way, seconds in found.items() if seconds > STANDS_WITHIN} == {}
+
+
+def test_a_server_that_is_killed_leaves_the_robot_standing_and_the_next_one_knows(browser: Browser) -> None:
+    with staged("teleop") as stage:
+        open_page(browser, stage.address())
+        stage.drives()
+
+        def press_and_kill() -> None:
+            browser.click("#stop")
+            browser.wait(HOLDS)
+            stage.kill_view()
+
+        stage.stands_after(press_and_kill, 2.0)
+        leave(browser)
+        stage.view = stage.open_view()
+        open_page(browser, stage.address())
+        browser.wait(HOLDS)
+        release(browser)
+        stage.drives()
+        leave(browser)
+
+
+def main() -> None:
+    """Hold each system for ten seconds in each way, and print how soon it stood."""
+    with Browser() as browser:
+        for name in SYSTEMS:
+            with staged(name) as stage:
+                found = stop_in_every_way(browser, stage, LONG, LONG)
+            sys.stdout.write(f"{name}: {', '.join(f'{way} {seconds:.3f} s' for way, seconds in found.items())}\n")
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
