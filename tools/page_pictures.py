@@ -97,10 +97,11 @@ def take(
 
 def remember(browser: Browser, remembered: dict[str, object]) -> None:
     """Replace the browser's memory of the page that is opened next."""
-    source = "localStorage.clear();" + "".join(
+    stored = "".join(
         f"localStorage.setItem('robolink.{name}', {json.dumps(json.dumps(value))});"
         for name, value in remembered.items()
     )
+    source = f"if (location.host) {{ localStorage.clear(); {stored} }}"  # about:blank has no memory
     added = browser.call("Page.addScriptToEvaluateOnNewDocument", source=source)["identifier"]
     if before := getattr(browser, "remembered_", None):
         browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=before)
