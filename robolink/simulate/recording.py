@@ -17,20 +17,15 @@ from robolink.exceptions import NotFoundError, RobolinkError
 from robolink.host.trace import ROSOUT, TRACEBACK
 from robolink.interfaces import find_announced
 from robolink.interfaces.rcl_interfaces.msg import Log
-from robolink.message import decoder, encode, type_hash, type_name
-from robolink.qos import DurabilityPolicy, QoSProfile
-from robolink.simulate.nodes import worlds_of
+from robolink.message import decoder, encode
+from robolink.qos import QoSProfile
+from robolink.simulate.scenery import SceneryTrack
 from robolink.system.processes import ROS_DISTRO
 from robolink.transport.base import NumberingOutlet
 from robolink.wire import NO_HASH, DataKey, parse_key, unpack_attachment
 
 if TYPE_CHECKING:
-    from robolink.message import Message
     from robolink.node import Node
-    from robolink.world_node.shapes import Scenery
-
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Profile of the markers of a world, as its node has it."""
 
 MOST_WAITING = 2**24
 """Size in bytes of what is published from which on it is written at once, and not after this part of the run."""
@@ -56,9 +51,7 @@ class SimulatedRecording:
         self._topics: dict[str, _Topic] = {}
         self._waiting: list[tuple[_Topic, int, bytes, bytes]] = []
         self._size = 0
-        self._begin = now()
-        self._sceneries: dict[str, Scenery] = {}
-        self._added: dict[str, _Added] = {}
+        self._scenery = SceneryTrack(self._bag, now())
         self._error: Exception | None = None
         self._closed = False
 
@@ -72,7 +65,9 @@ class SimulatedRecording:
     def _note(self, topic: _Topic, payload: bytes, attachment: bytes) -> None:
         if self._closed:
             return
-        self._waiting.append((topic, self._now(), payload, attachment))
+        now = self._now()
+        self._waiting.append((topic, now, payload, attachment))
+        self._scenery.look(self.nodes, now)
         self._size += len(payload)
         if self._size > MOST_WAITING:
             try:
@@ -92,27 +87,7 @@ class SimulatedRecording:
             sender = unpack_attachment(attachment)
             data = _steadied(payload) if topic.key.name == ROSOUT else payload
             self._bag.write(topic.number, at, sender.timestamp, sender.sequence, data)
-
-    def add_scenery(self) -> None:
-        """Add the markers of the simulated worlds: floor and walls once, the rest where it has changed."""
-        for node, simulation in worlds_of(self.nodes()):
-            from robolink.world_node.shapes import Scenery
-
-            name = node.get_fully_qualified_name()
-            if name not in self._sceneries:
-                scenery = self._sceneries[name] = Scenery(simulation.description)
-                self._add(f"{name}/floor", scenery.floor(), self._begin)
-                self._add(f"{name}/walls", scenery.walls(), self._begin)
-            self._add(f"{name}/objects", self._sceneries[name].objects(simulation), self._now())
-
-    def _add(self, name: str, message: Message, at: int) -> None:
-        known = self._added.get(name)
-        if known is None:
-            known = self._added[name] = _Added(self._bag.add_topic(_scenery_topic(name, type(message))))
-        payload = encode(message)
-        if payload != known.payload:
-            known.payload, known.count = payload, known.count + 1
-            self._bag.write(known.number, at, at, known.count, payload)
+        self._scenery.write()
 
     def close(self) -> None:
         """Write the rest and close the bag; nothing is noted any more. Raises OSError and McapError (a ValueError).
@@ -148,17 +123,6 @@ class _Topic:
     def __init__(self, key: DataKey) -> None:
         self.key, self.number = key, -1
         self.profiles: list[QoSProfile] = []
-
-
-class _Added:
-    """Topic of markers that nobody publishes: its number in the bag, its messages so far, and the last of them."""
-
-    def __init__(self, number: int) -> None:
-        self.number, self.count, self.payload = number, 0, b""
-
-
-def _scenery_topic(name: str, cls: type[Message]) -> BagTopic:
-    return BagTopic(name, type_name(cls), "cdr", type_hash(cls), (LATCHED,), message_definition(cls))
 
 
 class _TappedOutlet:

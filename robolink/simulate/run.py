@@ -236,7 +236,6 @@ class _Run:
             clock.sleep(min(left, part))
             left = end - clock.now()
             if self._recording is not None:
-                self._recording.add_scenery()
                 self._recording.write()
             self._watch.time(self.host.now)
 

@@ -9,7 +9,7 @@ import tempfile
 import threading
 import warnings
 from collections import deque
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from os import PathLike
 from pathlib import Path
@@ -21,6 +21,7 @@ from robolink.exceptions import OverwrittenError, RobolinkError, WireError
 from robolink.interfaces import find_announced
 from robolink.logging import get_logger
 from robolink.node import Node
+from robolink.simulate.scenery import SceneryTrack
 from robolink.system import waits
 from robolink.system.processes import ROS_DISTRO
 from robolink.testing.stage import NodeRequest
@@ -54,6 +55,7 @@ class BagRecording:
         class_of: Function that returns the class of a topic, None if nobody knows it.
         topics: Full names of the topics to record; None is all.
         in_real_time: True where messages come on threads of the network: one of its own then writes them.
+        nodes: Function that returns the nodes whose simulated worlds are added as markers.
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class BagRecording:
         topics: Collection[str] | None = None,
         *,
         in_real_time: bool = False,
+        nodes: Callable[[], Iterable[Node]] = tuple,
     ) -> None:
         self.path = path
         """Folder of the bag."""
@@ -76,6 +79,7 @@ class BagRecording:
         self._waiting: deque[tuple[Topic, int, Any]] = deque()
         self._metadata: BagMetadata | None = None
         self._failure: Exception | None = None
+        self._nodes, self._scenery = nodes, SceneryTrack(self._bag, max(0, now()), topics)
         self._lock = threading.RLock()
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._run, name="robolink test bag", daemon=True)
@@ -119,7 +123,9 @@ class BagRecording:
     def _note(self, topic: Topic, arrived: Any) -> None:
         if self._ends.is_set():
             return
-        self._waiting.append((topic, self._now(), arrived))
+        now = self._now()
+        self._waiting.append((topic, now, arrived))
+        self._scenery.look(self._nodes, now)
         if len(self._waiting) >= MOST_WAITING and not self._thread.is_alive():
             self._write()
 
@@ -136,6 +142,8 @@ class BagRecording:
                 each = self._waiting.popleft()
                 if self._metadata is None and self._failure is None:
                     self._write_one(*each)
+            if self._metadata is None and self._failure is None:
+                self._try(self._scenery.write)
 
     def _write_one(self, topic: Topic, at: int, arrived: Any) -> None:
         if self._is_other(topic):
@@ -247,7 +255,10 @@ class Bags:
 
     def _recorded(self, path: Path, scratch: Path | None, topics: frozenset[str] | None) -> BagRecording:
         stage = self._stage
-        made = BagRecording(path, self._recorder, stage.now_ns, stage.class_of, topics, in_real_time=not stage.virtual)
+        nodes = stage.nodes if stage.virtual else tuple  # in real time worlds publish their markers themselves
+        made = BagRecording(
+            path, self._recorder, stage.now_ns, stage.class_of, topics, in_real_time=not stage.virtual, nodes=nodes
+        )
         self._recordings.append((made, scratch))
         return made
 

@@ -79,7 +79,6 @@ class Shapes:
     def __init__(self, node: Node, simulation: Simulation, clock: Clock) -> None:
         self._simulation, self._scenery = simulation, Scenery(simulation.description)
         self._objects = node.create_publisher(MarkerArray, "~/objects", LATCHED)
-        self._shown: object = None
         node.create_publisher(MarkerArray, "~/floor", LATCHED).publish(self._scenery.floor())
         node.create_publisher(MarkerArray, "~/walls", LATCHED).publish(self._scenery.walls())
         self.publish()
@@ -87,11 +86,9 @@ class Shapes:
 
     def publish(self) -> None:
         """Publish what moves, is pushed or drives, if anything of it has changed."""
-        now = (tuple(_frames(self._simulation).items()), tuple(self._simulation.world.obstacle_poses()))
-        if now == self._shown:
-            return
-        self._shown = now
-        self._objects.publish(self._scenery.objects(self._simulation))
+        objects = self._scenery.changed(self._simulation)
+        if objects is not None:
+            self._objects.publish(objects)
 
 
 class Scenery:
@@ -104,6 +101,8 @@ class Scenery:
     def __init__(self, description: WorldDescription) -> None:
         self.description = description
         self._signs = Signs(description)
+        self._has_movable = any(map(moves, description.obstacles))
+        self._shown: object = None
 
     def floor(self) -> MarkerArray:
         """Return the markers of the floor and of what is painted on it."""
@@ -112,6 +111,16 @@ class Scenery:
     def walls(self) -> MarkerArray:
         """Return the markers of things that stand."""
         return _all_of([*_walls(self.description.walls), *_standing(self.description), *self._signs.standing()])
+
+    def changed(self, simulation: Simulation) -> MarkerArray | None:
+        """Return `objects` if anything of it has changed since the last call, by more than a tenth of a millimetre."""
+        robots = [(frame, simulation.world.robots[name].description) for name, frame in _frames(simulation).items()]
+        poses = simulation.world.obstacle_poses() if self._has_movable else []
+        now = robots, [(round(x, 4), round(y, 4), round(theta, 4)) for x, y, theta in poses]
+        if now == self._shown:
+            return None
+        self._shown = now
+        return self.objects(simulation)
 
     def objects(self, simulation: Simulation) -> MarkerArray:
         """Return the markers of things that move, are pushed or drive, where they are now."""

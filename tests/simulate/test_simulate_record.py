@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +86,9 @@ def test_the_walls_of_a_simulated_world_are_there_for_viewers(folder: Path, tmp_
             assert "walls" in {each.ns for each in decode(MarkerArray, bytes(walls[0].data)).markers}
             frames = {each.header.frame_id for each in decode(MarkerArray, bytes(objects[-1].data)).markers if each.ns}
             assert any(each.endswith("base_link") for each in frames)
-            assert len(objects) > 1, "some of them move"
+            times = [each.log_time - bag.start_time for each in objects]
+            assert 10 <= len(times) <= 101, "some of them move, and are seen ten times a second at most"
+            assert all(later - earlier >= 10**8 for earlier, later in pairwise(times))
             topics = [each for each in bag.topics if each.name.startswith("/world/")]
             assert all(is_latched(each) for each in topics)
     assert bags[0] == bags[1]

@@ -10,10 +10,12 @@ from typing import Any
 import pytest
 
 from robolink.bag.playing import PlayError
+from robolink.bag.playing.publishers import is_latched
 from robolink.bag.reader import open_bag
 from robolink.bag.topic import BagError
 from robolink.bag.writer import BagWriter
 from robolink.interfaces.std_msgs.msg import Int32, String
+from robolink.interfaces.visualization_msgs.msg import MarkerArray
 from robolink.message import decode, encode
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
@@ -47,6 +49,27 @@ def test_a_replay_gives_the_same_commands_byte_for_byte(tmp_path: Path) -> None:
         assert given[: len(recorded)] == recorded
         hashes.add(hashlib.sha256(b"".join(given)).hexdigest())
     assert len(hashes) == 1
+
+
+@pytest.mark.slow
+def test_a_bag_shows_the_simulated_world(tmp_path: Path) -> None:
+    with System(seed=1) as system:
+        system.start("world", parameters={"world": "lab"})
+        recording = system.record(tmp_path / "all")
+        only = system.record(tmp_path / "only", ["/ada/odom", "/world/walls"])
+        system.run(1.0)
+        recording.stop()
+        only.stop()
+        assert not system.node.get_publishers_info_by_topic("/world/walls"), "nobody publishes them in virtual time"
+    with open_bag(tmp_path / "all") as bag:
+        assert (bag.counts["/world/floor"], bag.counts["/world/walls"]) == (1, 1)
+        assert bag.counts["/world/objects"] >= 9, "things move"
+        (topic,) = (each for each in bag.topics if each.name == "/world/walls")
+        assert is_latched(topic)
+        (walls,) = bag.messages(["/world/walls"])
+        assert "walls" in {each.ns for each in decode(MarkerArray, bytes(walls.data)).markers}
+    with open_bag(tmp_path / "only") as bag:
+        assert set(bag.counts) == {"/ada/odom", "/world/walls"}
 
 
 def test_playing_is_steered_and_remapped(system: System, tmp_path: Path) -> None:
