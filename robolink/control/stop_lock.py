@@ -53,14 +53,20 @@ class Lock:
         node: Node whose publisher keeps it while it is held.
         on_change: Function that is called with True once it is held, with False once it is released.
         events: Callbacks for the events of that publisher.
+        keeps: False only looks, and says nothing of what others have said.
     """
 
     def __init__(
-        self, node: Node, on_change: Callable[[bool], object], events: PublisherEventCallbacks | None = None
+        self,
+        node: Node,
+        on_change: Callable[[bool], object],
+        events: PublisherEventCallbacks | None = None,
+        *,
+        keeps: bool = True,
     ) -> None:
         self.held = False
         """True while it holds."""
-        self._node, self._on_change, self._events = node, on_change, events
+        self._node, self._on_change, self._events, self._keeps = node, on_change, events, keeps
         self._publisher: Publisher[Bool] | None = None
         self._own: deque[bytes] = deque(maxlen=_REMEMBERED)
         self._heard: deque[tuple[bytes, int | None]] = deque(maxlen=_REMEMBERED)
@@ -87,14 +93,16 @@ class Lock:
             return
         self._heard.append((sender, number))
         if held and not self.held:
-            self.press()
+            if self._keeps:
+                self._say(True)
+            self._set(True)
         elif not held and self.held:
             self._set(False)
             self.withdraw()
 
     def repeat(self) -> None:
         """Say again that it holds, if it does: for who listens only now, and gets nothing of before."""
-        if self.held:
+        if self.held and self._keeps:
             self._say(True)
 
     def withdraw(self) -> None:

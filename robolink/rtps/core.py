@@ -79,6 +79,7 @@ class Core:
         *,
         on_peer: Callable[[Peer, bool], object] | None = None,
         on_endpoint: Callable[[Endpoint, bool], object] | None = None,
+        epoch: int = 0,
     ) -> None:
         """Make a participant without endpoints, which nobody knows yet: the first `tick` announces it.
 
@@ -88,6 +89,7 @@ class Core:
             send: gets what is to be sent.
             on_peer: is called with other participants that came or went.
             on_endpoint: is called with their endpoints that came or went.
+            epoch: nanoseconds since 1970 at which the time that it is told was 0.
         """
         self.prefix = me.prefix
         self.due = -math.inf
@@ -99,7 +101,7 @@ class Core:
         self._me, self._send = me, send
         self._on_peer, self._on_endpoint = on_peer, on_endpoint
         self._room = Room()
-        self._discovery = Discovery(me, network, send, self._peer_changed, self._remote_changed, self._room)
+        self._discovery = Discovery(me, network, send, self._peer_changed, self._remote_changed, self._room, epoch)
         self._writers: dict[bytes, StatefulWriter] = {}
         """By entity id."""
         self._readers_of: dict[bytes, list[StatefulReader]] = {}

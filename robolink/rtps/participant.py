@@ -78,6 +78,7 @@ class Participant:
             lambda address, buffers, pause: append((address, buffers, pause)),
             on_peer=on_peer,
             on_endpoint=on_endpoint,
+            epoch=time.time_ns() - int(steady() * 1e9),
         )
         self._lock = threading.Lock()
         """Around the core and the outbox. Nothing is sent, and nobody called, under it: a paced sample sleeps between

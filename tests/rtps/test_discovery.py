@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from robolink.rtps import Qos, ids
 from robolink.rtps.discovery import MOST_PEERS
-from robolink.rtps.submessages import AckNack, Data, Heartbeat, encode_data, encode_header, encode_heartbeat, parse
+from robolink.rtps.submessages import (
+    AckNack,
+    Data,
+    Heartbeat,
+    InfoTimestamp,
+    encode_data,
+    encode_header,
+    encode_heartbeat,
+    parse,
+)
 from tests.support.rtps_network import HOST, Faults, Network, numbers, sample
+
+MADE_UP_WITHIN = 0.5
+"""Seconds in which two participants meet, and have what is latched, although datagrams were lost."""
 
 
 def announcements(network: Network) -> int:
@@ -82,6 +96,47 @@ def test_two_that_do_not_know_that_they_are_known_do_not_answer_each_other_witho
     assert a.core.peers()
     assert b.core.peers()
     assert sum(address in (a.metatraffic, b.metatraffic) for _, _, address in network.sent) < 300
+
+
+def test_samples_of_discovery_have_source_timestamps_that_rise_with_their_numbers() -> None:
+    """Fast DDS sorts what waits for an earlier sample by them, that of all participants together."""
+    network = Network()
+    us, other = network.join(), network.join()
+    writers = [us.writer(f"rt/w{number}") for number in range(3)]
+    assert network.run(1, until=lambda: len(other.core.endpoints()) == 3)
+    us.core.remove(network.now, writers[0])
+    us.writer("rt/w3")
+    network.run(1)
+    stamps: dict[int, int] = {}
+    for _, raw, _ in network.sent:
+        stamp = 0
+        for each in parse(raw).submessages:
+            if isinstance(each, InfoTimestamp):
+                stamp = each.timestamp
+            elif isinstance(each, Data) and each.writer == ids.PUBLICATIONS_WRITER:
+                assert stamps.setdefault(each.number, stamp) == stamp
+    assert sorted(stamps) == [1, 2, 3, 4, 5]
+    assert 0 < stamps[1] <= stamps[2] <= stamps[3] < stamps[4] <= stamps[5]
+
+
+def _meet(losses: tuple[int, ...] = ()) -> int:
+    """Let two meet while datagrams with these numbers are lost; return how many there were."""
+    network = Network()
+    members = [network.join(), network.join()]
+    got = []
+    for member, other in zip(members, reversed(members), strict=True):
+        member.put(member.writer(f"rt/{members.index(member)}", Qos(depth=1, transient_local=True)), sample(7))
+        got.append(member.reader(f"rt/{members.index(other)}", Qos(depth=1, transient_local=True))[1])
+    known = {each for member in members for each in (member.metatraffic, member.default)}
+    count = itertools.count()
+    network.faults = Faults(is_lost=lambda raw, address: address in known and next(count) in losses)
+    assert network.run(MADE_UP_WITHIN, until=lambda: all(numbers(each) == [7] for each in got)), losses
+    return next(count)
+
+
+def test_any_two_datagrams_that_are_lost_while_two_meet_are_made_up_soon() -> None:
+    for losses in itertools.combinations(range(-1, _meet()), 2):  # -1: only one of them
+        _meet(losses)
 
 
 def test_samples_that_come_before_their_writer_is_known_are_not_lost() -> None:

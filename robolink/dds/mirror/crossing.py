@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from robolink.dds.mirror.sides import Later, Side
@@ -39,6 +39,8 @@ class Forward:
         """Gids of the samples that come this way."""
         self.last = b""
         """Attachment of the last sample that came this way."""
+        self.is_silent = False
+        """True once nobody wants what comes this way."""
 
     def _hold(self, payload: bytes, attachment: bytes) -> None:
         if self._waiting is not None:
@@ -50,6 +52,11 @@ class Forward:
         self.put = self._outlet.put
         for payload, attachment in waiting:
             self._outlet.put(payload, attachment)
+
+    def silence(self) -> None:
+        """Drop from now on all that comes, and what waits."""
+        self.is_silent, self._waiting = True, None
+        self.put = self._hold
 
     def is_new(self, attachment: bytes) -> bool:
         """True unless a sample of this number, or a later one, has come this way."""
@@ -87,9 +94,10 @@ class Crossing:
             # The number and time are the sender's; the gid is that of its announcement on the other side.
             forward.put(payload, numbers_in(attachment) + forward.sender)
 
-    def admit(self, gids: Iterable[bytes], forward: Forward) -> None:
+    def admit(self, gids: Sequence[bytes], forward: Forward) -> None:
         """Send the samples of the publisher with these gids on from now on, those that wait first."""
-        for gid in gids:
+        before = [silent for gid in gids if (silent := self._forwards.get(gid)) is not None]
+        for gid in dict.fromkeys([*gids, *(each for silent in before for each in silent.gids)]):
             self._forwards[gid] = forward
             forward.gids.append(gid)
             _, waiting = self._parked.pop(gid, (0.0, ()))
@@ -99,7 +107,16 @@ class Crossing:
                     forward.last = attachment
                     forward.put(payload, numbers_in(attachment) + forward.sender)
 
-    def dismiss(self, gids: Iterable[bytes]) -> None:
+    def silence(self, gids: Sequence[bytes]) -> None:
+        """Drop the samples of a publisher, which nobody wants until it is admitted again.
+
+        Were it forgotten, those that are under way would wait for its announcement, and the next reader would get them.
+        """
+        for gid in gids:
+            if (forward := self._forwards.get(gid)) is not None:
+                forward.silence()
+
+    def dismiss(self, gids: Sequence[bytes]) -> None:
         """Forget a publisher."""
         found = [forward for gid in gids if (forward := self._forwards.get(gid)) is not None]
         for forward in found:
@@ -142,7 +159,7 @@ class Crossing:
         for gid, (since, waiting) in [*self._parked.items()]:
             if now - since < ADOPTED_AFTER:
                 continue
-            forward = next((each for each in self._forwards.values() if not each.last), None)
+            forward = next((each for each in self._forwards.values() if not each.last and not each.is_silent), None)
             if forward is not None:
                 self.admit([gid], forward)
             elif now - since >= KNOWN_WITHIN:

@@ -152,19 +152,24 @@ class TopicFlow:
 
     def _close(self, gid: bytes, publication: _Publication) -> None:
         flowing, publication.flowing = publication.flowing, None
-        if flowing is None:
-            return
 
         def end() -> None:
-            flowing.forward.open()
+            if flowing is not None:
+                flowing.forward.open()
             self.crossing.dismiss(gids_of(gid, publication.token))
-            flowing.outlet.close()
+            if flowing is not None:
+                flowing.outlet.close()
 
         self._source.lane.post(end)  # behind the samples that wait
-        self._users[flowing.key] -= 1
-        if not self._users[flowing.key]:
-            del self._users[flowing.key]
-            self._feed(flowing.key)
+        if flowing is not None:
+            self._release(flowing.key)
+
+    def _release(self, key: str) -> None:
+        """Count one less of the publishers of a key whose samples flow."""
+        self._users[key] -= 1
+        if not self._users[key]:
+            del self._users[key]
+            self._feed(key)
 
     # Subscriptions
 
@@ -197,8 +202,16 @@ class TopicFlow:
         self._source.withdraw(announced, token)
 
     def _stop(self, gid: bytes, publication: _Publication) -> None:
-        """End a flow. A latched one is announced anew: what it has retained would be too old for who comes next."""
-        self._close(gid, publication)
+        """End a flow that nobody wants.
+
+        A latched one is announced anew: what it has retained would be too old for who comes next.
+        """
+        flowing, publication.flowing = publication.flowing, None
+        assert flowing is not None
+        # At once, and what is under way is dropped: behind a lane that is slow, who comes next would get it.
+        flowing.outlet.close()
+        self._source.lane.post(functools.partial(self.crossing.silence, gids_of(gid, publication.token)))
+        self._release(flowing.key)
         if publication.latched:
             before = publication.announced
             publication.announced = self._target.announce(publication.token, publication.type_hash)

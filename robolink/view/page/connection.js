@@ -1,7 +1,7 @@
 // WebSocket client of the view's server: Foxglove's protocol, with the batches and statistics of robolink.v1.
 //
-// Events: open, close, info (serverInfo), channels, services, statistics, graph, parameters, recording, playback, time,
-// status. Messages go to `onmessage(subscription, time, view)`. Times are milliseconds.
+// Events: open, close, info (serverInfo), channels, services, statistics, graph, parameters, recording, stop, playback,
+// time, status. Messages go to `onmessage(subscription, time, view)`. Times are milliseconds.
 
 import { Schema } from "./cdr.js";
 import { Emitter } from "./dom.js";
@@ -29,7 +29,7 @@ const milliseconds = (view, at) => (view.getUint32(at + 4, true) * 4294967296 + 
 function putTime(view, at, time) { view.setBigUint64(at, BigInt(Math.round(time * 1000)) * 1000n, true); }
 
 const publisherKey = (topic, type, options) => `${topic} ${type} ${JSON.stringify(options)}`;
-const emptyGraph = () => ({ published: new Map(), subscribed: new Map(), services: new Map(), types: new Map(), nodes: [] });
+const emptyGraph = () => ({ published: new Map(), subscribed: new Map(), services: new Map(), types: new Map(), qos: new Map(), nodes: [] });
 
 export class Connection extends Emitter {
   /** @param {string} address of the WebSocket */
@@ -146,8 +146,7 @@ export class Connection extends Emitter {
   }
 
   /**
-   * Publish a message. `options.stopAfter`: seconds after which the server stops a robot that hears nothing more;
-   * `options.hold`: until `unpublish` no client may drive on this topic.
+   * Publish a message. `options.stopAfter`: seconds after which the server stops a robot that hears nothing more.
    */
   publish(topic, type, message, options = {}) {
     const payload = this.schemaOf(type).encode(message);
@@ -162,13 +161,6 @@ export class Connection extends Emitter {
     new DataView(data.buffer).setUint32(1, this._publishers.get(key), true);
     data.set(payload, 5);
     return this._raw(data);
-  }
-
-  /** End what `publish` with the same options has begun. */
-  unpublish(topic, type, options = {}) {
-    const key = publisherKey(topic, type, options);
-    if (this._publishers.has(key)) this.send({ op: "unadvertise", channelIds: [this._publishers.get(key)] });
-    this._publishers.delete(key);
   }
 
   /** Service by its name, or undefined: {id, name, type, request, response}. */
@@ -263,6 +255,7 @@ const TEXT = {
   },
   statistics(connection, operation) { connection.emit("statistics", operation); },
   parameterValues(connection, operation) { connection.emit("parameters", operation); },
+  stop(connection, operation) { connection.emit("stop", operation); },
   recording(connection, operation) { connection.emit("recording", operation); },
   learn(connection, operation) { connection.learn = operation; connection.emit("learn", operation); },
   exercise(connection, operation) { connection.emit("exercise", operation); },
@@ -276,6 +269,7 @@ function updateGraph(connection, operation) {
   for (const [key, ids] of [["published", "publisherIds"], ["subscribed", "subscriberIds"]]) {
     for (const each of operation[`${key}Topics`] ?? []) {
       graph[key].set(each.name, each[ids]);
+      each[ids].forEach((node, i) => graph.qos.set(`${key} ${each.name} ${node}`, each.qos?.[i] ?? ""));
       if (each.type) graph.types.set(each.name, each.type);
     }
   }

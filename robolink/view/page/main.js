@@ -18,7 +18,8 @@
 // - words(key, values), tell(text, isError): texts of the page, and notes to the person
 // - on("pick", (topic, path) => ...): a number in the tree of a message was clicked; a drag has text/robolink-field,
 //   JSON {topic, path}
-// - on("stop"), drivable(): the STOP button; topics that drive robots, with their types
+// - stopping: STOP (stop.js): held, press(), release(); on("stop") tells of a press and of each change
+// - drivable(): topics that drive robots, with their types
 // - on("header", (element) => ...): place for a tool in the header; also emitted when it is built again
 
 import { Connection } from "./connection.js";
@@ -26,12 +27,12 @@ import { button, Emitter, h, isTyping } from "./dom.js";
 import { Layout } from "./layout.js";
 import { offered } from "./layouts.js";
 import { addRecordButton } from "./recording.js";
+import { Stop } from "./stop.js";
 import { Frames } from "./tf.js";
 import { Timeline } from "./timeline.js";
 import { Topics } from "./topics.js";
 import { addWords, choose, words } from "./words.js";
 
-const STOP_SECONDS = 1, STOP_PERIOD = 50;
 const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
 const SETTINGS = "robolink.settings";
 
@@ -99,19 +100,6 @@ class App extends Emitter {
     for (const topic of this.topics.values()) if (TWISTS.includes(topic.type) && /(^|\/|_)cmd_vel($|\/|_)/.test(topic.name)) found.set(topic.name, topic.type);
     return found;
   }
-
-  /** Stop all robots: zeros for a second. Event: stop. */
-  stop() {
-    this.emit("stop");
-    const robots = this.drivable();
-    this.tell(robots.size ? words("stop.sent", { topics: [...robots.keys()].join(", ") }) : words("stop.none"), !robots.size);
-    const end = performance.now() + STOP_SECONDS * 1000;
-    const send = () => {
-      for (const [name, type] of robots) this.connection.publish(name, type, {});
-      if (performance.now() < end) setTimeout(send, STOP_PERIOD);
-    };
-    send();
-  }
 }
 
 const app = new App();
@@ -166,12 +154,11 @@ function buildHeader() {
     else app.layout.add(menu.value);
     menu.value = "";
   } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
-  const stop = button(words("stop"), words("stop.title"), () => app.stop(), { id: "stop", hidden: app.isBag || app.isLearn });
   const tools = h("span", { id: "tools" });
   document.getElementById("header").replaceChildren(h("h1", { title: name }, name), state, h("span", { class: "gap" }),
     h("button", { id: "more", type: "button", "aria-label": words("more"), popovertarget: "menu" }, "⋯"),
     h("div", { id: "menu", popover: "auto" }, tools, menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
-      button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" })), stop);
+      button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" })), app.stopping.button());
   app.emit("header", tools);
   showState();
 }
@@ -182,12 +169,9 @@ function showState() {
   state.textContent = connection.isOpen ? (readOnly ? words("read-only") : words("connected")) : words(app.lost ? "lost" : "connecting");
   state.title = readOnly ? words("read-only.why") : "";
   state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
-  const stop = document.getElementById("stop");
-  stop.disabled = !connection.isOpen || readOnly;
-  stop.title = readOnly ? words("read-only.why") : words("stop.title");
 }
 
-const SHORTCUTS = ["space", "d", "g", "i", "a", "1…9", "⇥ ←→ del", "esc", "p", "l", "←↑→↓", "+ -", "f", "t", "?"];
+const SHORTCUTS = ["space", "d", "g", "i", "a", "1…9", "⇥ ←→ del", "esc", "p", "l", "←↑→↓", "+ -", "f", "m", "t", "?"];
 const SHORTCUT_WORDS = { "1…9": "digit", "⇥ ←→ del": "tabs", "←↑→↓": "arrows", "+ -": "zoom" };
 
 function help() {
@@ -214,10 +198,11 @@ function inWorld(event) { app.layout.open("world").loaded.then(() => app.layout.
 
 function shortcut(event) {
   if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-  const acts = { "?": help, a: () => document.getElementById("add").focus(), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => !app.connection.isReadOnly && !app.isBag && app.stop() };
+  const acts = { "?": help, a: () => document.getElementById("add").focus(), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
   if (!app.isBag && !app.isLearn) acts.g = acts.i = inWorld;
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
-  if (!act || (event.key === " " && event.target instanceof HTMLButtonElement)) return;
+  // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
+  if (!act || (event.key === " " && event.target.matches("button:focus-visible, summary"))) return;
   event.preventDefault();
   if (!event.repeat || event.key === " ") act(event);
 }
@@ -243,6 +228,7 @@ function begin() {
   document.body.append(app.notes);
   showTheme();
   addRecordButton(app);
+  app.stopping = new Stop(app);
   app.timeline = new Timeline(document.getElementById("timeline"), app);
   buildHeader();
   app.layout = new Layout(document.getElementById("panels"), app);

@@ -8,12 +8,15 @@ The page's subprotocol robolink.v1 is Foxglove's JSON and binary operations, and
   each publisher of each topic.
 - `subscribe`: `rate` in Hz for each subscription, the newest message of each publisher in each period.
 - `advertise` of a client: `stopAfter` in seconds, zeros are published when nothing came for so long (1 s without
-  it). `hold`: while this channel is there, no other client may drive on its topic.
+  it).
 - `subscribeStatistics`: once a second `statistics`; of each channel `rate`, `bandwidth`, `age`, `count`,
   `publishers`, `subscriptions`, of the server `clients`, `cpu`, `dropped`. While a client subscribes to them, all
   topics are received; those above 2 MB/s that nobody else looks at only for one of 11 seconds, without `age`
   meanwhile.
 - `record`: `command` start or stop, `path`; the server answers with `recording`, once a second.
+- `stop`: `held` true presses STOP, false releases it; it needs the token. The server sends `stop` to each page, at
+  first and when anything of it has changed: `held`, the nodes that `obeyed` listen, and `unheard`, topics of commands
+  with the nodes that move and do not listen.
 - `learn`: of `robolink learn view`, `command` show, check, hint or reset with the `name` of an exercise, or
   language with en or pt. All but show need the token. The server sends `learn`, the list with its states, and
   `exercise`, all of one: text, hints shown, and the `report` of its last check with the `track` of the robots.

@@ -56,7 +56,6 @@ class ClientChannel(msgspec.Struct, rename="camel"):
     """Channel that a client wants to publish on.
 
     After `stop_after` seconds without a message, something that drives gets zeros; None is the server's STOP_AFTER.
-    With `hold` nobody else may drive on this topic while the channel is there: an emergency stop.
     """
 
     id: U32
@@ -64,7 +63,6 @@ class ClientChannel(msgspec.Struct, rename="camel"):
     encoding: Name
     schema_name: Name
     stop_after: Annotated[float, msgspec.Meta(gt=0, le=3600)] | None = None
-    hold: bool = False
 
 
 class Advertise(_Op, tag="advertise"):
@@ -143,6 +141,12 @@ class Record(_Op, tag="record"):
     path: Name | None = None
 
 
+class Stop(_Op, tag="stop"):
+    """Request to press STOP, or with `held` false to release it (robolink.v1)."""
+
+    held: bool
+
+
 class Learn(_Op, tag="learn"):
     """Request of the panel of exercises: to show, check or reset one, for a hint, or for a language (robolink.v1)."""
 
@@ -165,6 +169,7 @@ JsonOp = (
     | SubscribeStatistics
     | UnsubscribeStatistics
     | Record
+    | Stop
     | Learn
 )
 

@@ -39,8 +39,11 @@ HEADERS = {
 }
 """Headers of every answer."""
 
-_COMMENT = re.compile(rb"^[ \t]*(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/[ \t]*)$", re.MULTILINE)
-"""Comments of a script that have their lines to themselves."""
+_COMMENT = re.compile(rb"^[ \t]*(?://.*|/\*(?:[^*]|\*(?!/))*\*/[ \t]*)$", re.MULTILINE)
+"""Comments of a script or a style sheet that have their lines to themselves."""
+
+_MARGIN = re.compile(rb"^[ \t]+|[ \t]+// [^\"'`\n]*$", re.MULTILINE)
+"""Indentation, and comments at the end of a line in which no text can end: `"a // b"` is not one."""
 
 
 class Verdict(NamedTuple):
@@ -188,8 +191,9 @@ def find(path: str, folder: Path = PAGE) -> File | None:
 
 
 def _lean(file: Path) -> bytes:
-    """Return the bytes of a file that a browser needs: a script without its comments, each line where it was."""
+    """Return the bytes of a file that a browser needs: without comments and indentation, each line where it was."""
     body = file.read_bytes()
-    if file.suffix != ".js":
+    if file.suffix not in {".js", ".css"}:
         return body
-    return _COMMENT.sub(lambda found: b"\n" * found.group().count(b"\n"), body)
+    bare = _COMMENT.sub(lambda found: b"\n" * found.group().count(b"\n"), body)
+    return _MARGIN.sub(b"", bare) if file.suffix == ".js" else bare

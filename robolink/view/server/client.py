@@ -48,7 +48,7 @@ class Client:
         self.is_legacy = subprotocol == FOXGLOVE_WEBSOCKET
         self.outbox = Outbox(wire, batching=self.is_page)
         self.mistakes = 0
-        self._publishing = Publishing(hub.system) if hub.system is not None else None
+        self._publishing = Publishing(hub.system, hub.stopping) if hub.system and hub.stopping else None
         self._calling = Calling(self, hub.system) if hub.system is not None else None
         self._tasks: set[asyncio.Task[None]] = set()
         self._wire = wire
@@ -223,6 +223,10 @@ class Client:
         self._check_trust("recording")
         self._later(_there(self.hub.recorder, "recording").obey(request))
 
+    def _stop(self, request: requests.Stop) -> None:
+        self._check_trust("release of STOP" if not request.held else "STOP")
+        _there(self.hub.stopping, "STOP").set(request.held)
+
     def _learn(self, request: requests.Learn) -> None:
         if request.command != "show":
             self._check_trust(f"learn {request.command}")
@@ -298,6 +302,7 @@ _HANDLERS: dict[type[Any], Callable[[Client, Any], None]] = {
     requests.UnsubscribeConnectionGraph: Client._unfollow_graph,
     requests.PlaybackControl: Client._control,
     requests.Record: Client._record,
+    requests.Stop: Client._stop,
     requests.Learn: Client._learn,
     requests.SubscribeStatistics: Client._follow_statistics,
     requests.UnsubscribeStatistics: Client._unfollow_statistics,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from robolink.graph.graph import Graph
+from robolink.qos import HistoryPolicy, QoSProfile
 from robolink.view.protocol import answers
 from robolink.view.server.outbox import Listener
 from robolink.view.sources.live import LiveSource
@@ -14,12 +15,16 @@ Place = tuple[str, str]
 """Name of a topic or service, and its type."""
 
 
+Ends = dict[str, str]
+"""Quality of service of each node's end of a topic or service, as a text."""
+
+
 class Picture(NamedTuple):
     """The graph at a moment: the nodes at each end of each topic and service, and all nodes."""
 
-    published: dict[Place, list[str]]
-    subscribed: dict[Place, list[str]]
-    served: dict[Place, list[str]]
+    published: dict[Place, Ends]
+    subscribed: dict[Place, Ends]
+    served: dict[Place, Ends]
     nodes: list[str]
 
 
@@ -28,20 +33,28 @@ NOTHING = Picture({}, {}, {}, [])
 
 def picture_of(graph: Graph, own: str) -> Picture:
     """Return the ends and nodes of a graph; subscriptions of the node `own` are left out: it is the viewer."""
-    ends: dict[EndpointKind, dict[Place, set[str]]] = {kind: {} for kind in EndpointKind}
+    ends: dict[EndpointKind, dict[Place, Ends]] = {kind: {} for kind in EndpointKind}
     for each in graph.endpoints(*EndpointKind):
         if each.full_node_name != own or each.kind is EndpointKind.PUBLISHER:
-            ends[each.kind].setdefault((each.name, each.type_name), set()).add(each.full_node_name)
+            ends[each.kind].setdefault((each.name, each.type_name), {})[each.full_node_name] = _text(each.qos)
     sides = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVICE)
-    published, subscribed, served = ({place: sorted(of) for place, of in ends[side].items()} for side in sides)
+    published, subscribed, served = (
+        {place: dict(sorted(of.items())) for place, of in ends[side].items()} for side in sides
+    )
     nodes = sorted({each.full_node_name for each in graph.nodes()} - {own})
     return Picture(published, subscribed, served, nodes)
+
+
+def _text(qos: QoSProfile) -> str:
+    """Return the policies that decide who hears whom, and what late ones get, by ROS 2's names."""
+    depth = "keep_all" if qos.history == HistoryPolicy.KEEP_ALL else f"depth {qos.depth or '?'}"  # DDS need not tell it
+    return f"{qos.reliability.short_key} {qos.durability.short_key} {depth}"
 
 
 def change(before: Picture, now: Picture, *, all_of_it: bool) -> dict[str, Any] | None:
     """Return the fields of `connectionGraphUpdate` that lead from one picture to another; None if nothing changed.
 
-    With `all_of_it` they have the types and the nodes, which are robolink's own.
+    With `all_of_it` they have the types, the nodes, and the quality of service of each end, which are robolink's own.
     """
     if before == now:
         return None
@@ -57,13 +70,14 @@ def change(before: Picture, now: Picture, *, all_of_it: bool) -> dict[str, Any] 
     return fields | {"nodes": now.nodes} if all_of_it else fields
 
 
-def _changed(
-    before: dict[Place, list[str]], now: dict[Place, list[str]], key: str, typed: bool
-) -> list[dict[str, Any]]:
+def _changed(before: dict[Place, Ends], now: dict[Place, Ends], key: str, all_of_it: bool) -> list[dict[str, Any]]:
     """Return the entries that differ; one whose last node has gone stays, with none."""
-    changed: dict[Place, list[str]] = {place: [] for place in before if place not in now}
-    changed |= {place: nodes for place, nodes in now.items() if before.get(place) != nodes}
-    return [{"name": name, key: nodes} | ({"type": kind} if typed else {}) for (name, kind), nodes in changed.items()]
+    changed: dict[Place, Ends] = {place: {} for place in before if place not in now}
+    changed |= {place: ends for place, ends in now.items() if before.get(place) != ends}
+    return [
+        {"name": name, key: list(ends)} | ({"type": kind, "qos": list(ends.values())} if all_of_it else {})
+        for (name, kind), ends in changed.items()
+    ]
 
 
 class Connections:

@@ -21,6 +21,7 @@ from robolink.view.server.parameters import Parameters
 from robolink.view.server.recording import Recorder
 from robolink.view.server.statistics import PERIOD as STATISTICS
 from robolink.view.server.statistics import Statistics
+from robolink.view.server.stopping import Stopping
 from robolink.view.sources.bag import BagSource
 from robolink.view.sources.live import LiveSource
 
@@ -46,15 +47,25 @@ class Hub:
         host: Address that the server listens at, for clients to know.
         session: Id of this run of the server, by which clients see that it was started again.
         exercises: Exercises for the page; None for none.
+        read_only: True if nobody may change anything.
     """
 
-    def __init__(self, source: Source, host: str, session: str, exercises: Exercises | None = None) -> None:
+    def __init__(
+        self,
+        source: Source,
+        host: str,
+        session: str,
+        exercises: Exercises | None = None,
+        *,
+        read_only: bool = False,
+    ) -> None:
         self.source, self._host, self._session = source, host, session
         self.bag = source if isinstance(source, BagSource) else None
         self.system = source if isinstance(source, LiveSource) else None
         self.parameters = Parameters(self.system) if self.system is not None else None
         self.connections = Connections(self.system) if self.system is not None else None
         self.statistics = Statistics(source, clocks.monotonic if self.bag is None else self._bag_seconds)
+        self.stopping = None if self.system is None else Stopping(self.system, self._tell_pages, keeps=not read_only)
         self.recorder = Recorder(self.system, self._tell_pages) if self.system is not None else None
         self.learning = Learning(exercises, self._tell_pages) if exercises is not None else None
         self.clients: set[Client] = set()
@@ -114,6 +125,8 @@ class Hub:
             client.say(answers.status(level, message, id_))
         if self.bag is not None:
             client.send(self.bag.playback_state(did_seek=False))
+        if client.is_page and self.stopping is not None:
+            client.say(self.stopping.state())
         if client.is_page and self.recorder is not None:
             client.say(self.recorder.state())
         if client.is_page and self.learning is not None:
@@ -129,7 +142,8 @@ class Hub:
         while True:
             if not self.clients:
                 with contextlib.suppress(asyncio.TimeoutError):
-                    await asyncio.wait_for(self._somebody.wait(), IDLE)
+                    held = self.stopping is not None and self.stopping.held
+                    await asyncio.wait_for(self._somebody.wait(), PERIOD if held else IDLE)
             begin = self.now()
             try:
                 self.tick(begin)
@@ -143,7 +157,8 @@ class Hub:
             self.source.sweep()
         except Exception as error:  # noqa: BLE001 - a message that cannot be read; robots must be stopped all the same
             self.fail(error)
-        for each in list(self.clients):
+        ticking = [self.stopping] if self.stopping is not None else []
+        for each in [*ticking, *self.clients]:
             try:
                 each.tick(now)
             except Exception as error:  # noqa: BLE001 - the other clients go on
@@ -176,10 +191,19 @@ class Hub:
         """Stop what clients drive, record and check."""
         for each in list(self.clients):
             each.close()
+        if self.stopping is not None:
+            self.stopping.close()
         if self.recorder is not None:
             self.recorder.close()
         if self.learning is not None:
             self.learning.close()
+
+    def begin(self) -> None:
+        """Begin to listen to STOP, and to check exercises, in a running loop."""
+        if self.stopping is not None:
+            self.stopping.begin()
+        if self.learning is not None:
+            self.learning.begin()
 
     # What the source tells
 

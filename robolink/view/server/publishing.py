@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 
+from robolink.control.stop_lock import TOPIC
 from robolink.exceptions import RobolinkError
 from robolink.interfaces import find
 from robolink.message import Service, decode, encode, from_builtins, to_builtins
@@ -16,6 +17,7 @@ from robolink.view.protocol import answers
 from robolink.view.protocol.answers import ENCODINGS
 from robolink.view.protocol.requests import ClientChannel, ProtocolError, ServiceCall
 from robolink.view.server.outbox import Listener
+from robolink.view.server.stopping import DRIVEN, Stopping
 from robolink.view.sources.live import LiveSource
 
 STOP_AFTER = 1.0
@@ -26,9 +28,6 @@ A page that freezes keeps its connection for a quarter of a minute.
 
 MOST_CHANNELS = 500
 """Upper bound of the channels that one client may publish on."""
-
-DRIVEN = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-"""Types of messages that set robots in motion."""
 
 ANSWER_WITHIN = 300.0
 """Longest wait for an answer, in seconds."""
@@ -43,7 +42,7 @@ MOST_CALLS = 100
 class _Outgoing:
     """One channel of a client."""
 
-    def __init__(self, system: LiveSource, request: ClientChannel) -> None:
+    def __init__(self, system: LiveSource, stopping: Stopping, request: ClientChannel) -> None:
         self.cls = _class_of(system, request.schema_name)
         self.encoding, self.stop_after = request.encoding, request.stop_after
         self.publisher = system.node.create_publisher(self.cls, request.topic, 10)
@@ -51,9 +50,7 @@ class _Outgoing:
         self.moving: Any = None
         """Last message, if it moves something."""
         self.stops_at = 0.0
-        self._system, self._holds, self._reported = system, request.hold, False
-        if self._holds:
-            system.held[self.publisher.topic] += 1
+        self._system, self._stopping, self._reported = system, stopping, False
 
     def publish(self, payload: bytes, now: float) -> None:
         """Publish what a client sent. Raises RobolinkError if it is not a message of the type."""
@@ -70,12 +67,12 @@ class _Outgoing:
             self.stops_at = now + (self.stop_after or STOP_AFTER)
 
     def _is_held(self) -> bool:
-        """Return whether an emergency stop keeps this from moving anything; raises ProtocolError the first time."""
-        is_held = self._system.held[self.publisher.topic] > 0
+        """Return whether STOP keeps this from moving anything; raises ProtocolError the first time."""
+        is_held = self._stopping.held
         reported, self._reported = self._reported, is_held
         if is_held and not reported:
             self.stop()
-            raise ProtocolError("an emergency stop of a page holds it at zero")
+            raise ProtocolError(f"STOP holds ({TOPIC})")
         return is_held
 
     def stop(self) -> None:
@@ -89,9 +86,6 @@ class _Outgoing:
         try:
             self.stop()
         finally:
-            if self._holds:
-                self._holds = False
-                self._system.held[self.publisher.topic] -= 1
             self._system.node.destroy_publisher(self.publisher)
 
 
@@ -100,10 +94,11 @@ class Publishing:
 
     Args:
         system: System that it publishes to.
+        stopping: STOP of that system, while which nothing is moved.
     """
 
-    def __init__(self, system: LiveSource) -> None:
-        self._system = system
+    def __init__(self, system: LiveSource, stopping: Stopping) -> None:
+        self._system, self._stopping = system, stopping
         self._channels: dict[int, _Outgoing] = {}
 
     def advertise(self, request: ClientChannel) -> None:
@@ -115,7 +110,7 @@ class Publishing:
         if request.encoding not in ENCODINGS:
             expected = " or ".join(ENCODINGS)
             raise ProtocolError(f"advertise {request.topic}: encoding {request.encoding!r}; expected {expected}")
-        self._channels[request.id] = _Outgoing(self._system, request)
+        self._channels[request.id] = _Outgoing(self._system, self._stopping, request)
 
     def unadvertise(self, number: int) -> None:
         """End a channel; what it drives stops."""

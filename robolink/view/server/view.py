@@ -92,7 +92,7 @@ class View:
         self._source, self._host, self._port = source, settings.host, settings.port
         token = settings.token or secrets.token_urlsafe(18)
         self._access = Access(settings.host, 0, token, settings.read_only)
-        self.hub = Hub(source, settings.host, secrets.token_hex(8), exercises)
+        self.hub = Hub(source, settings.host, secrets.token_hex(8), exercises, read_only=settings.read_only)
         """Its clients."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ready = threading.Event()
@@ -160,8 +160,7 @@ class View:
         server = await self._listen()
         self._access = self._access._replace(port=next(iter(server.sockets)).getsockname()[1])
         self._source.begin(self.hub)
-        if self.hub.learning is not None:
-            self.hub.learning.begin()
+        self.hub.begin()
         ticking = asyncio.create_task(self.hub.run())
         self._ready.set()
         try:

@@ -8,7 +8,7 @@ import itertools
 import os
 import queue
 import struct
-from collections import Counter, OrderedDict, deque
+from collections import OrderedDict, deque
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -147,8 +147,6 @@ class LiveSource:
         self._following: list[Handle] = []
         self._announced: set[str] = set()
         self.caller = Caller(node)
-        self.held: Counter[str] = Counter()
-        """Topics on which no client may drive, with the number of emergency stops that say so."""
         self._clock_channel: Channel | None = None
         self._clock = self._shown_clock = 0
         self.followers: list[Callable[[], object]] = []

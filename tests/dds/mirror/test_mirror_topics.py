@@ -269,3 +269,43 @@ def test_a_publisher_whose_gid_is_not_that_of_its_token(joined: Mirrored) -> Non
     joined.run(KNOWN_WITHIN + 0.5)
     assert got == [1, 7, 8, 2]
     assert all(not each._parked and len(each._forwards) <= 1 for each in crossings(joined))
+
+
+def test_what_comes_behind_the_last_subscription_is_not_given_to_the_next(pair: tuple[Mirrored, Half, Half]) -> None:
+    """One for the last was under way, or waited in the lane: the next gets the newest, and nothing else."""
+    scene, here, there = pair
+    publisher = here.node("map_server").create_publisher(Int32, "map", LATCHED)
+    send(publisher, 1)
+    first = there.node("first")
+    got = heard(first, "map", LATCHED)
+    scene.until(lambda: got == [1])
+    (crossing,) = [each for each in crossings(scene) if each._forwards]
+    attachment = next(iter(crossing._forwards.values())).last
+    first.destroy_node()
+    scene.until(lambda: not publisher._is_heard_)
+    crossing._source.lane.sink(crossing)((packed(1), attachment))
+    scene.run(0.1)
+    send(publisher, 2)
+    late = heard(there.node("late"), "map", QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+    scene.run(0.5)
+    assert late == [2]
+
+
+def test_a_latched_message_that_nobody_reads_any_more_is_gone_although_the_lane_stands(joined: Mirrored) -> None:
+    publisher = joined.a.node("map_server").create_publisher(Int32, "map", LATCHED)
+    send(publisher, 1)
+    first = joined.b.node("first")
+    got = heard(first, "map", LATCHED)
+    joined.until(lambda: got == [1])
+    assert joined.mirror is not None
+    lane = joined.mirror.sides[0].lane
+    step, lane.step = lane.step, lambda: False  # type: ignore[method-assign]
+    first.destroy_node()
+    joined.until(lambda: not publisher._is_heard_)
+    send(publisher, 2)
+    late = heard(joined.b.node("late"), "map", LATCHED)
+    joined.run(0.5)
+    assert late == []
+    lane.step = step  # type: ignore[method-assign]
+    joined.run(0.5)
+    assert late == [2]

@@ -198,6 +198,7 @@ def test_the_view_follows_a_robot(browser: Browser) -> None:
     with opened(browser, "world") as page:
         publish_all(page.node)
         look(page)
+        browser.click(".layers-button")
         browser.choose("select.follow", "robot")
         browser.wait(f"Math.abs({WORLD}.view.x - 0.5) < 0.01")
         tf = page.node.create_publisher(TFMessage, "/tf", LATCHED)
@@ -248,6 +249,9 @@ def test_another_fixed_frame_measures_in_it(browser: Browser) -> None:
     with opened(browser, "world") as page:
         publish_all(page.node)
         look(page)
+        browser.click(f"{page.panel('world')} canvas")
+        browser.press("m")
+        browser.wait("document.querySelector('select.fixed')?.options.length > 2")
         browser.choose("select.fixed", "odom")
         browser.wait("robolink.tf.fixed == 'odom'")
         browser.move(page.world(0.0, 0.0))

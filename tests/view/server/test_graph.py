@@ -31,6 +31,7 @@ def test_the_graph_and_its_changes(subprotocol: str) -> None:
         assert named(update["advertisedServices"], "/robot/get_parameters")["providerIds"] == ["/robot"]
         if subprotocol == "robolink.v1":
             assert named(update["subscribedTopics"], "/heard")["type"] == "std_msgs/msg/String"
+            assert named(update["subscribedTopics"], "/heard")["qos"] == ["reliable volatile depth 10"]
             assert update["nodes"] == ["/robot"]
         publisher.destroy()
         update = client.wait_for("connectionGraphUpdate")
@@ -38,8 +39,8 @@ def test_the_graph_and_its_changes(subprotocol: str) -> None:
 
 
 def test_a_topic_that_changes_hands_is_not_removed() -> None:
-    before = Picture({("/a", "T"): ["/n"]}, {}, {}, ["/n"])
-    after = Picture({("/a", "T"): ["/m"]}, {}, {}, ["/m"])
+    before = Picture({("/a", "T"): {"/n": ""}}, {}, {}, ["/n"])
+    after = Picture({("/a", "T"): {"/m": ""}}, {}, {}, ["/m"])
     update = change(before, after, all_of_it=False)
     assert update is not None
     assert update["publishedTopics"] == [{"name": "/a", "publisherIds": ["/m"]}]

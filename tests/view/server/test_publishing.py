@@ -90,45 +90,6 @@ def test_a_server_that_ends_stops_the_robots() -> None:
         assert not moves(robot.heard[1])
 
 
-def test_an_emergency_stop_of_one_page_holds_the_robot_against_the_others() -> None:
-    with shown() as system, system.spinning(), system.client() as page, system.client() as driver:
-        robot = Listener(system)
-        advertise(driver)
-        driver.publish(1, forward())
-        until(lambda: len(robot.heard) == 1)
-        advertise(page, hold=True, stopAfter=0.25)
-        page.publish(1, serialize_message(Twist()))
-        until(lambda: len(robot.heard) == 2)
-        for _ in range(5):
-            driver.publish(1, forward())
-        driver.settle()
-        told = [each["message"] for each in driver.heard if each["op"] == "status"]
-        assert told == ["/cmd_vel: not published: an emergency stop of a page holds it at zero"]
-        driver.publish(1, serialize_message(Twist()))  # zeros are welcome
-        driver.settle()
-        page.send("unadvertise", channelIds=[1])
-        page.settle()
-        driver.publish(1, forward())
-        until(lambda: bool(robot.heard) and moves(robot.heard[-1]))
-        assert sum(map(moves, robot.heard)) == 2
-
-
-@pytest.mark.parametrize("leave", ["close", "cut"])
-def test_an_emergency_stop_ends_with_its_page(leave: str) -> None:
-    with shown() as system, system.spinning(), system.client() as driver:
-        robot = Listener(system)
-        advertise(driver)
-        with system.client() as page:
-            advertise(page, hold=True)
-            page.settle()
-            assert system.source.held["/cmd_vel"] == 1
-            if leave == "cut":
-                page.socket.socket.close()
-        until(lambda: not system.source.held["/cmd_vel"])
-        driver.publish(1, forward())
-        until(lambda: bool(robot.heard) and moves(robot.heard[-1]))
-
-
 def test_zeros_keep_the_frame_and_have_the_time() -> None:
     last = TwistStamped()
     last.header.frame_id = "base"

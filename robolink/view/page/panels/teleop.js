@@ -1,4 +1,4 @@
-// Teleop panel: drives a robot by keys, by mouse or finger on a stick, or by a gamepad; dead-man and emergency stop.
+// Teleop panel: drives a robot by keys, by mouse or finger on a stick, or by a gamepad; dead-man. Its E-STOP is STOP.
 //
 // A robot moves only while something is held and the panel has the keyboard (a stick: the pointer). The server stops it
 // when nothing came for 0.25 s, and at once when the page goes.
@@ -12,8 +12,7 @@ addPairs("teleop", {
   stick: ["stick: drag it, or hold W A S D or the arrows (Q and E: sideways)", "alavanca: arraste, ou segure W A S D ou as setas (Q e E: para o lado)"],
   keys: ["Click the stick to drive by keys: W A S D or arrows, Q E sideways. Release to stop.", "Clique na alavanca para dirigir por teclas: W A S D ou setas, Q E de lado. Solte para parar."],
   pad: ["Gamepad: hold LB or RB and use the sticks.", "Gamepad: segure LB ou RB e use as alavancas."],
-  estop: ["E-STOP", "EMERGÊNCIA"], estop_title: ["hold the robot at zero until it is released", "manter o robô parado até liberar"],
-  release: ["RELEASE", "LIBERAR"], stopped: ["emergency stop", "parada de emergência"], idle: ["stands", "parado"],
+  estop: ["E-STOP", "EMERGÊNCIA"], idle: ["stands", "parado"],
 });
 
 const PERIOD = 50; // ms between commands
@@ -30,11 +29,10 @@ class Teleop {
     Object.assign(this, { element, app, topic: "", linear: 0.5, angular: 1 }, options);
     this.held = new Set();
     this.pull = null; // [forward, turn] of the stick while it is held
-    this.engaged = false;
     this.zeros = 0;
     this._build();
     const release = () => this.release();
-    this.offs = [app.on("stop", release), app.store.on("change", () => this._list()), app.connection.on("info", () => this._list())];
+    this.offs = [app.on("stop", () => { release(); this._list(); }), app.store.on("change", () => this._list()), app.connection.on("info", () => this._list())];
     const hidden = () => document.hidden && release();
     addEventListener("blur", release);
     document.addEventListener("visibilitychange", hidden);
@@ -47,8 +45,7 @@ class Teleop {
 
   close() {
     clearInterval(this.timer);
-    if (this.moving || this.engaged) this._send([0, 0, 0]);
-    this._letGo();
+    if (this.moving) this._send([0, 0, 0]);
     for (const off of this.offs) off();
   }
 
@@ -62,7 +59,9 @@ class Teleop {
     };
     this.knob = h("div", { class: "knob" });
     this.stick = h("div", { class: "stick", tabIndex: 0, role: "application", "aria-label": words("teleop.stick"), title: words("teleop.stick") }, this.knob);
-    this.estop = button(words("teleop.estop"), words("teleop.estop_title"), () => this._engage(!this.engaged), { className: "estop" });
+    const { stopping } = this.app;
+    this.estop = button("", "", () => (stopping.held ? stopping.release() : stopping.press()), { className: "estop" });
+    this.estop.addEventListener("keydown", (event) => { if (event.key === " " && stopping.held) event.preventDefault(); }); // space never releases
     this.state = h("output", { class: "velocity" });
     this.why = h("p", { class: "warn why" });
     this.element.append(h("div", { class: "row" }, this.topics, speed("linear"), speed("angular")), this.why,
@@ -85,11 +84,13 @@ class Teleop {
       topics.replaceChildren(...all.map((name) => h("option", { value: name }, name)));
     }
     topics.value = this.topic;
-    const why = connection.isReadOnly ? words("read-only.why") : !names.includes(this.topic) ? words("teleop.none") : "";
+    const held = app.stopping.held, why = connection.isReadOnly ? words("read-only.why") : held ? words("stop.refused") : !names.includes(this.topic) ? words("teleop.none") : "";
     this.why.textContent = this.blocked = why;
     this.stick.ariaDisabled = String(Boolean(why));
-    this.estop.disabled = Boolean(why) && !this.engaged;
-    this.estop.title = why || words("teleop.estop_title");
+    this.estop.disabled = connection.isReadOnly;
+    this.estop.ariaPressed = String(held);
+    this.estop.textContent = words(held ? "stop.release" : "teleop.estop");
+    this.estop.title = this.estop.ariaLabel = words(connection.isReadOnly ? "read-only.why" : held ? "stop.release_title" : "stop.title");
   }
 
   /** Drive another robot: the one before stands first. */
@@ -97,25 +98,10 @@ class Teleop {
     this.release();
     if (this.topic) this._send([0, 0, 0]);
     this.moving = false;
-    this._engage(false);
     this.topic = topic;
     this._list();
     this.app.remember();
   }
-
-  _engage(engaged) {
-    const { words } = this.app;
-    this.release();
-    if (!engaged) this._letGo();
-    this.engaged = engaged;
-    this.zeros = ZEROS;
-    this.estop.textContent = words(engaged ? "teleop.release" : "teleop.estop");
-    this.estop.ariaPressed = String(engaged);
-    this._tick();
-  }
-
-  /** End the hold of an emergency stop. */
-  _letGo() { if (this.holding) this.app.connection.unpublish(...this.holding); }
 
   /** Let go of everything; a held key counts again only when it is pressed anew. */
   release() {
@@ -186,7 +172,7 @@ class Teleop {
 
   /** Shares of [forward, sideways, turn] that are asked for; null while nothing is held. */
   _wanted() {
-    if (this.engaged || this.blocked) return null;
+    if (this.blocked) return null;
     if (this.held.size) return [...this.held].reduce((sum, code) => sum.map((each, i) => Math.max(-1, Math.min(1, each + KEYS[code][i]))), [0, 0, 0]);
     if (this.pull) return [this.pull[0], 0, this.pull[1]];
     return this._gamepad();
@@ -199,12 +185,12 @@ class Teleop {
       this.moving = true;
       this.zeros = ZEROS;
       this._send(wanted);
-    } else if (this.engaged || (this.moving && this.zeros > 0)) {
-      if (!this.engaged) this.zeros -= 1;
+    } else if (this.moving && this.zeros > 0) {
+      this.zeros -= 1;
       this._send([0, 0, 0]);
       this.moving = this.zeros > 0;
     }
-    const { words } = this.app, text = this.engaged ? words("teleop.stopped") : wanted ? this.sent : words("teleop.idle");
+    const { words } = this.app, text = wanted ? this.sent : words("teleop.idle");
     if (this.state.textContent !== text) this.state.textContent = text;
   }
 
@@ -215,9 +201,7 @@ class Teleop {
     this.sent = `${x.toFixed(2)} m/s${y ? ` (${y.toFixed(2)})` : ""}, ${z.toFixed(2)} rad/s`;
     const twist = { linear: { x, y, z: 0 }, angular: { x: 0, y: 0, z } }, now = Date.now();
     const stamp = { sec: Math.floor(now / 1000), nanosec: (now % 1000) * 1e6 };
-    const options = { stopAfter: STOP_AFTER, ...(this.engaged ? { hold: true } : {}) };
-    if (this.engaged) this.holding = [topic, type, options];
-    app.connection.publish(topic, type, type.endsWith("Stamped") ? { header: { stamp, frame_id: "" }, twist } : twist, options);
+    app.connection.publish(topic, type, type.endsWith("Stamped") ? { header: { stamp, frame_id: "" }, twist } : twist, { stopAfter: STOP_AFTER });
   }
 }
 

@@ -1,14 +1,14 @@
 // World panel: the world from above, with maps, robots, lidar, paths and markers; goal and initial pose by click.
 
 import { button, h, isTyping } from "../dom.js";
-import { degrees } from "./world_layers.js";
+import { degrees, isGoal } from "./world_layers.js";
+import { legend, OVERLAYS } from "./world_legend.js";
 import { Scene } from "./world_scene.js";
 import { View } from "./world_view.js";
 
-const OVERLAYS = ["grid", "trails", "tf", "names"];
 const TOOLS = {
-  goal: { key: "g", type: "geometry_msgs/msg/PoseStamped", name: "goal_pose", text: "goal" },
-  initial: { key: "i", type: "geometry_msgs/msg/PoseWithCovarianceStamped", name: "initialpose", text: "pose" },
+  goal: { type: "geometry_msgs/msg/PoseStamped", name: "goal_pose", text: "goal" },
+  initial: { type: "geometry_msgs/msg/PoseWithCovarianceStamped", name: "initialpose", text: "pose" },
 };
 const COVARIANCE = new Array(36).fill(0);
 COVARIANCE[0] = COVARIANCE[7] = 0.25; // as rviz has it
@@ -23,14 +23,14 @@ class World {
     this.canvas = h("canvas", { class: "world", tabIndex: 0, role: "application", "aria-label": this.words("panel.world") });
     this.status = h("output", { class: "status" });
     this.note = h("p", { class: "hint" });
-    element.append(this.canvas, this._toolbar(), this._layerList(), this.note, this.status);
+    element.append(this.canvas, this._toolbar(), this._menu(), this.note, this.status);
     this.view = new View(this.canvas, this._pointerTool());
     this.view.onpan = () => this._follow("");
     if (options.view) {
       this.view.look(...options.view);
       this.view.auto = false;
     }
-    this.scene = new Scene(app, this.view, new Set(options.off ?? []));
+    this.scene = new Scene(app, this.view, new Set(options.off ?? []), new Set(options.on ?? []));
     this.offs = [app.store.on("change", () => this.scene.follow()), app.on("theme", () => this.scene.theme()), app.store.on("forget", () => this.scene.forget())];
     this.scene.follow();
     this.keys = (event) => this._key(event);
@@ -43,7 +43,7 @@ class World {
 
   save() {
     const { x, y, scale, auto } = this.view;
-    return { follow: this.followed, off: [...this.scene.off], view: auto ? undefined : [x, y, scale] };
+    return { follow: this.followed, off: [...this.scene.off], on: [...this.scene.on], view: auto ? undefined : [x, y, scale] };
   }
 
   close() {
@@ -75,6 +75,7 @@ class World {
     this.note.textContent = scene.layers.size || names.length
       ? (scene.loose.size ? this.words("world.unconnected", { frame: this.app.tf.fixed, frames: [...scene.loose].map((name) => name || "''").join(", ") }) : "") : this.words("world.none");
     if (!this.view.auto) return;
+    this.view.covered = this.bar.offsetHeight > 80 ? this.bar.offsetWidth : 0; // closed, as on a phone, it covers a corner
     const box = scene.bounds(), [left, top] = this.view.toWorld(0, 0), [right, bottom] = this.view.toWorld(this.canvas.clientWidth, this.canvas.clientHeight);
     if (box && (!this.fitted || box[0] < left || box[1] < bottom || box[2] > right || box[3] > top)) this.view.fit(box);
     this.fitted ||= Boolean(box);
@@ -114,43 +115,59 @@ class World {
   }
 
   _toolbar() {
-    const { words } = this;
-    this.fixedMenu = h("select", { title: words("world.fixed"), "aria-label": words("world.fixed"), class: "fixed", onchange: () => {
+    const { words } = this, tool = (name) => button(words(`world.tool.${TOOLS[name].text}`), words(`world.${name}`), () => this._use(name), { class: `tool-${name}`, ariaPressed: "false" });
+    this.toolButtons = { goal: tool("goal"), initial: tool("initial") };
+    this.target = h("select", { class: "target", hidden: true, "aria-label": words("panel.topics") });
+    this.bar = h("div", { class: "toolbar", role: "toolbar", "aria-label": words("panel.world") },
+      button("☰", words("world.layers"), () => this._turnMenu(), { class: "layers-button", ariaExpanded: "false" }),
+      button(words("world.tool.fit"), words("world.fit"), () => this.fit(), { class: "fit" }),
+      button("+", words("world.zoomin"), () => this.view.zoom(1.25)), button("−", words("world.zoomout"), () => this.view.zoom(0.8)),
+      ...(this.app.isBag ? [] : [...Object.values(this.toolButtons), this.target]));
+    return this.bar;
+  }
+
+  /** What the view follows, its fixed frame, and the layers. */
+  _menu() {
+    const { words } = this, menu = (name, onchange) => h("select", { "aria-label": words(`world.${name}`), class: name, onchange });
+    this.fixedMenu = menu("fixed", () => {
       this.app.settings.fixed = this.fixedMenu.value; // one for all panels: they share the tree of frames
       this.slow = undefined;
       this.app.remember();
-    } });
-    this.followMenu = h("select", { title: words("world.follow"), "aria-label": words("world.follow"), class: "follow", onchange: () => this._follow(this.followMenu.value) });
-    this.toolButtons = Object.fromEntries(Object.entries(TOOLS).map(([name, { text }]) => [name, button(words(`world.tool.${text}`), words(`world.${name}`), () => this._use(name), { class: `tool-${name}`, ariaPressed: "false" })]));
-    this.target = h("select", { class: "target", hidden: true, "aria-label": words("panel.topics") });
-    return h("div", { class: "toolbar" },
-      button(words("world.tool.fit"), words("world.fit"), () => this.fit(), { class: "fit" }), button("+", words("world.zoomin"), () => this.view.zoom(1.25)), button("−", words("world.zoomout"), () => this.view.zoom(0.8)),
-      button("☰", words("world.layers"), () => { this.list.hidden = !this.list.hidden; this._layers(); }, { class: "layers-button" }),
-      h("label", {}, `${words("world.follow")} `, this.followMenu), h("label", {}, `${words("world.fixed")} `, this.fixedMenu),
-      ...Object.values(this.toolButtons), this.target);
+    });
+    this.followMenu = menu("follow", () => this._follow(this.followMenu.value));
+    this.list = h("div", { class: "list", role: "group", "aria-label": words("world.layers") });
+    this.menu = h("div", { class: "layers", hidden: true, tabIndex: -1 }, h("label", {}, words("world.follow"), this.followMenu), h("label", {}, words("world.fixed"), this.fixedMenu), this.list);
+    return this.menu;
   }
 
-  _layerList() {
-    this.list = h("div", { class: "layers", hidden: true, role: "group", "aria-label": this.words("world.layers") });
-    return this.list;
+  _turnMenu(isOpen = this.menu.hidden) {
+    this.menu.hidden = !isOpen;
+    const opener = this.bar.firstChild;
+    this.bar.classList.toggle("open", isOpen);
+    opener.ariaExpanded = String(isOpen);
+    this._layers();
+    if (isOpen) this.menu.focus();
+    else opener.focus();
   }
 
   _layers() {
-    if (this.list.hidden) return;
-    const { scene } = this, key = [...scene.layers.keys()].join("\n");
-    if (this.list.dataset.key === key && this.list.children.length) return;
-    this.list.dataset.key = key;
-    const row = (name, text, colour, type) => {
-      const box = h("input", { type: "checkbox", checked: scene.shows(name), value: name, onchange: () => {
-        scene.show(name, box.checked);
-        this.app.remember();
-      } });
-      const swatch = h("span", { class: "swatch" });
-      if (colour) swatch.style.background = colour;
-      return h("label", { title: type ?? "" }, box, swatch, text);
-    };
-    this.list.replaceChildren(...OVERLAYS.map((name) => row(name, this.words(`world.${name}`))),
-      ...[...scene.layers].sort(([a], [b]) => (a < b ? -1 : 1)).map(([name, { layer, topic }]) => row(name, name, layer.colour, topic.type)));
+    if (this.menu.hidden) return;
+    const { scene } = this, rows = [...OVERLAYS, ...[...scene.layers.keys()].sort()];
+    const key = rows.map((name) => `${name} ${scene.shows(name)} ${scene.layers.get(name)?.layer.colour}`).join("\n");
+    if (this.list.dataset.key !== key) {
+      this.list.dataset.key = key;
+      this.list.replaceChildren(...rows.map((name) => this._row(name)));
+    }
+    for (const each of this.list.querySelectorAll("canvas")) legend(each, scene, each.dataset.name);
+  }
+
+  _row(name) {
+    const { scene } = this, box = h("input", { type: "checkbox", checked: scene.shows(name), value: name, onchange: () => {
+      scene.show(name, box.checked);
+      this.app.remember();
+    } });
+    const swatch = h("canvas", { class: "swatch", width: 44, height: 24, "data-name": name });
+    return h("label", { title: scene.layers.get(name)?.topic.type ?? "" }, box, swatch, OVERLAYS.includes(name) ? this.words(`world.${name}`) : name);
   }
 
   _hover(now) {
@@ -161,7 +178,8 @@ class World {
 
   _key(event) {
     if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
-    const acts = { f: () => this.fit(), g: () => this._use("goal"), i: () => this._use("initial"), Escape: () => this._use(null) };
+    const acts = { f: () => this.fit(), g: () => this._use("goal"), i: () => this._use("initial"), m: () => this._turnMenu(),
+      Escape: () => (this.menu.hidden ? this._use(null) : this._turnMenu(false)) };
     if (!acts[event.key]) return;
     event.preventDefault();
     acts[event.key]();
@@ -169,7 +187,8 @@ class World {
 
   /** Take a tool in the hand, or put it away. */
   _use(name) {
-    const { connection } = this.app;
+    const { connection, isBag } = this.app;
+    if (isBag) return undefined;
     if (name && connection.isReadOnly) return this.app.tell(this.words("read-only.why"), true);
     this.tool = name === this.tool ? null : name;
     for (const [each, element] of Object.entries(this.toolButtons)) element.ariaPressed = String(each === this.tool);
@@ -208,9 +227,12 @@ class World {
     const at = this.app.clock(), sec = Math.floor(at / 1000);
     const header = { stamp: { sec, nanosec: Math.floor((at - sec * 1000) * 1e6) }, frame_id: fixed };
     const pose = { position: { x, y, z: 0 }, orientation: { x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2) } };
-    const sent = this.app.connection.publish(topic, type, { header, pose: this.tool === "initial" ? { pose, covariance: COVARIANCE } : pose });
-    if (sent) this.app.tell(this.words("world.sent", { topic, x: x.toFixed(2), y: y.toFixed(2), degrees: degrees(yaw).slice(0, -1), frame: fixed }));
-    else this.app.tell(this.words("lost"), true);
+    const message = { header, pose: this.tool === "initial" ? { pose, covariance: COVARIANCE } : pose }, isHeard = this.app.connection.graph.subscribed.get(topic)?.length > 0;
+    if (!this.app.connection.publish(topic, type, message)) this.app.tell(this.words("lost"), true);
+    else if (isHeard) {
+      this.app.tell(this.words("world.sent", { topic, x: x.toFixed(2), y: y.toFixed(2), degrees: degrees(yaw).slice(0, -1), frame: fixed }));
+      this.scene.sent(topic, type, message);
+    } else this.app.tell(this.words(isGoal(topic) ? "world.unheard.goal" : "world.unheard", { topic }), true);
     this._use(null);
   }
 }

@@ -1,16 +1,20 @@
 // Layers of the world panel: one class for each kind of message, by what it draws.
 //
-// A layer has `update(message, scene)`, called with each new message, and any of: ground(context, scene) drawn only
-// when it changes, pixels(scene), draw(context, scene), bounds() -> [left, bottom, right, top], hover(x, y, reach, scene).
+// A layer has `update(message, scene)`, called with each new message, and any of: floor, map and ground(context, scene),
+// drawn only when they change, groundKey(scene) that tells of it, pixels(scene), draw(context, scene),
+// bounds() -> [left, bottom, right, top], hover(x, y, reach, scene). Its colours are `colour` and `pixel`.
 
 import { compose, inverse, poseOf, rotate, yawOf } from "../tf.js";
 import { Markers } from "./world_markers.js";
-import { pixel } from "./world_pixels.js";
+import { faint, pixel } from "./world_pixels.js";
 import { around } from "./world_view.js";
 
 const MOST_POINTS = 120_000;
 const TRAIL_POINTS = 400;
 const ELLIPSE = 2; // standard deviations
+const SHOWN_BEAMS = 60; // of a scan, as lines
+const SIGHT = 1.2; // metres that a camera's view is drawn
+const REACHED = 0.35; // metres from a goal at which it is reached
 
 /** Axes of a pose seen from above: [x, y, xx, xy, yx, yy]. */
 function seen(pose) {
@@ -19,11 +23,14 @@ function seen(pose) {
 }
 
 class Layer {
-  constructor(topic, colour) {
-    this.topic = topic;
-    this.colour = colour;
+  constructor(topic) { this.topic = topic; }
+
+  set colour(colour) {
+    this._colour = colour;
     this.pixel = pixel(colour);
   }
+
+  get colour() { return this._colour; }
 
   update(message) { this.message = message; }
 
@@ -50,19 +57,45 @@ class Scan extends Layer {
 
   pixels(scene) {
     if (!this.pose) this.place(scene);
-    scene.pixels.beams(this.message, this.turn, this.pixel);
+    if (scene.many) scene.pixels.beams(this.message, this.turn, this.pixel);
+  }
+
+  /** Draw what the beams sweep, some of them, and where they end. */
+  draw(context, scene) {
+    if (scene.many) return;
+    const { view } = scene, unit = view.ratio, ends = this._ends(), x = view.toX(this.turn[0]), y = view.toY(this.turn[1]);
+    const places = ends.map((end) => end && [view.toX(end[0]), view.toY(end[1])]), every = Math.ceil(ends.length / SHOWN_BEAMS);
+    context.fillStyle = context.strokeStyle = faint(this.colour, 0.06);
+    context.beginPath();
+    context.moveTo(x, y);
+    for (const place of places) context.lineTo(...(place ?? [x, y]));
+    context.fill();
+    context.strokeStyle = faint(this.colour, 0.18);
+    context.lineWidth = unit;
+    context.beginPath();
+    places.forEach((place, i) => {
+      if (!place || i % every) return;
+      context.moveTo(x, y);
+      context.lineTo(...place);
+    });
+    context.stroke();
+    dots(context, places, this.colour, unit);
+  }
+
+  /** Where the beams end, in metres; null for those that end nowhere. */
+  _ends(every = 1) {
+    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
+    const [px, py, xx, xy, yx, yy] = this.turn, ends = [];
+    for (let i = 0; i < ranges.length; i += every) {
+      const range = ranges[i], cos = range * Math.cos(start + i * step), sin = range * Math.sin(start + i * step);
+      ends.push(range >= least && range <= most ? [px + cos * xx + sin * yx, py + cos * xy + sin * yy] : null);
+    }
+    return ends;
   }
 
   bounds() {
-    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
-    const [px, py, xx, xy, yx, yy] = this.turn, ends = [{ x: px, y: py }];
-    const every = Math.ceil(ranges.length / 45); // enough to fit the view
-    ranges.forEach((range, i) => {
-      if (i % every) return;
-      const cos = range * Math.cos(start + i * step), sin = range * Math.sin(start + i * step);
-      if (range >= least && range <= most) ends.push({ x: px + cos * xx + sin * yx, y: py + cos * xy + sin * yy });
-    });
-    return around(ends);
+    const ends = this._ends(Math.ceil(this.message.ranges.length / 45)); // enough to fit the view
+    return around([[this.turn[0], this.turn[1]], ...ends.filter(Boolean)].map(([x, y]) => ({ x, y })));
   }
 
   hover(x, y, reach) {
@@ -148,7 +181,9 @@ class Grid extends Layer {
 
   _corner(scene) { return compose(this.frame(scene), poseOf(this.message.info.origin)); }
 
-  ground(context, scene) {
+  groundKey(scene) { return Object.values(this.frame(scene)).join(); }
+
+  map(context, scene) {
     const { view } = scene, { resolution } = this.message.info, [x, y, xx, xy, yx, yy] = seen(this._corner(scene)), s = view.scale * resolution;
     context.save();
     context.imageSmoothingEnabled = s < 1;
@@ -181,7 +216,7 @@ class Odometry extends Layer {
     this.root = scene.frames.fixed;
     const last = trail[trail.length - 1];
     if (!last || Math.hypot(pose.x - last.x, pose.y - last.y) > scene.trailStep) {
-      if (last && scene.trails) scene.pixels.groundLine(last.x, last.y, pose.x, pose.y, this.pixel);
+      if (last && scene.trails && scene.many) scene.pixels.groundLine(last.x, last.y, pose.x, pose.y, this.pixel);
       trail.push({ x: pose.x, y: pose.y });
       if (trail.length > TRAIL_POINTS) this.trail = trail.filter((_, i) => i % 2 === 0);
     }
@@ -191,8 +226,16 @@ class Odometry extends Layer {
 
   forget() { this.trail = []; }
 
+  /** Draw the trail: of many robots in pixels, into the ground. */
+  draw(context, { view, trails, many, colours }) {
+    if (many || !trails) return;
+    context.beginPath();
+    for (const { x, y } of [...this.trail, this.pose]) context.lineTo(view.toX(x), view.toY(y));
+    cased(context, colours, this.colour, 2 * view.ratio);
+  }
+
   groundPixels(scene) {
-    if (!scene.trails) return;
+    if (!scene.trails || !scene.many) return;
     const { trail } = this;
     for (let i = 1; i < trail.length; i++) scene.pixels.groundLine(trail[i - 1].x, trail[i - 1].y, trail[i].x, trail[i].y, this.pixel);
   }
@@ -223,13 +266,15 @@ class Outline extends Layer {
 
   draw(context, scene) {
     const points = this._points(scene), { view } = scene;
-    context.strokeStyle = context.fillStyle = this.colour;
-    context.lineWidth = 2;
     context.beginPath();
-    if (points.length === 1) context.arc(view.toX(points[0].x), view.toY(points[0].y), 4, 0, 2 * Math.PI);
+    if (points.length === 1) context.arc(view.toX(points[0].x), view.toY(points[0].y), 4 * view.ratio, 0, 2 * Math.PI);
     else for (const { x, y } of points) context.lineTo(view.toX(x), view.toY(y));
-    if (this.message.polygon) context.closePath();
-    context.stroke();
+    if (this.message.polygon) {
+      context.closePath();
+      context.fillStyle = faint(this.colour, 0.25);
+      context.fill();
+    }
+    cased(context, scene.colours, this.colour, 3 * view.ratio);
   }
 
   bounds(scene) { return around(this._points(scene)); }
@@ -248,14 +293,27 @@ class Poses extends Layer {
   }
 
   draw(context, scene) {
-    const { view } = scene, length = Math.max(0.3 * view.scale, 12);
-    context.strokeStyle = this.colour;
-    context.lineWidth = this.message.poses ? 1 : 3;
+    const { view, colours } = scene, length = Math.max(0.3 * view.scale, 12 * view.ratio), poses = this._poses(scene);
+    if (isGoal(this.topic.name)) return this.isReached(scene) || goal(context, scene, poses[0], this.colour);
     context.beginPath();
-    for (const pose of this._poses(scene)) arrow(context, view.toX(pose.x), view.toY(pose.y), yawOf(pose), this.message.poses ? length / 2 : length);
-    context.stroke();
+    for (const pose of poses) arrow(context, view.toX(pose.x), view.toY(pose.y), yawOf(pose), this.message.poses ? length / 2 : length);
+    cased(context, colours, this.colour, (this.message.poses ? 1 : 3) * view.ratio);
     const { covariance } = this.message.pose ?? {};
     if (covariance) this._ellipse(context, scene, covariance);
+    return undefined;
+  }
+
+  update(message) {
+    super.update(message);
+    this.reached = false;
+  }
+
+  /** True once a robot has come to the goal. */
+  isReached(scene) {
+    const [pose] = this._poses(scene), isHere = ({ name, pose: at }) => Math.hypot(pose.x - at.x, pose.y - at.y) < REACHED
+      && (scene.drawn.length === 1 || this.topic.name.startsWith(`/${name}/`));
+    this.reached ||= scene.drawn.some(isHere);
+    return this.reached;
   }
 
   _ellipse(context, scene, covariance) {
@@ -282,7 +340,7 @@ class Cone extends Layer {
   draw(context, scene) {
     const { view } = scene, { range, field_of_view: angle } = this.message, pose = this.frame(scene), yaw = yawOf(pose);
     if (!Number.isFinite(range)) return;
-    context.fillStyle = `${this.colour}55`;
+    context.fillStyle = faint(this.colour, 0.3);
     context.beginPath();
     context.moveTo(view.toX(pose.x), view.toY(pose.y));
     context.arc(view.toX(pose.x), view.toY(pose.y), range * view.scale, -yaw - angle / 2, -yaw + angle / 2);
@@ -292,6 +350,64 @@ class Cone extends Layer {
   hover(x, y, reach, scene) {
     const pose = this.frame(scene);
     return Math.hypot(pose.x - x, pose.y - y) < reach ? `${this.message.range.toFixed(3)} m` : null;
+  }
+}
+
+/** View of a camera, in its frame: an optical one looks along z, with x to the right; else along x, with y to the left. */
+class Sight extends Layer {
+  draw(context, scene) {
+    const { view } = scene, { k, width, header } = this.message, pose = scene.known(header.frame_id);
+    if (!pose || !(k[0] > 0) || scene.many) return;
+    const isOptical = header.frame_id.endsWith("optical_frame"), x = view.toX(pose.x), y = view.toY(pose.y);
+    const [left, right] = [-k[2], width - k[2]].map((column) => {
+      const side = (column / k[0]) * SIGHT, p = isOptical ? rotate(pose, side, 0, SIGHT) : rotate(pose, SIGHT, -side, 0);
+      return [view.toX(pose.x + p[0]), view.toY(pose.y + p[1])];
+    });
+    const fill = context.createRadialGradient(x, y, 0, x, y, Math.hypot(left[0] - x, left[1] - y) || 1);
+    fill.addColorStop(0, faint(this.colour, 0.4));
+    fill.addColorStop(1, faint(this.colour, 0.12));
+    context.beginPath();
+    for (const corner of [left, [x, y], right]) context.lineTo(...corner);
+    context.fillStyle = fill;
+    context.fill();
+    context.strokeStyle = faint(this.colour, 0.8);
+    context.lineWidth = view.ratio;
+    context.stroke();
+  }
+}
+
+/** True for topics of goals, as navigation listens to them. */
+export function isGoal(name) { return name.endsWith("goal_pose"); }
+
+/** Stroke a path in a colour, on an edge that is seen on any floor. */
+export function cased(context, { halo }, colour, width) {
+  context.lineCap = context.lineJoin = "round";
+  for (const [style, wide] of [[halo, 2 * width], [colour, width]]) {
+    context.strokeStyle = style;
+    context.lineWidth = wide;
+    context.stroke();
+  }
+}
+
+/** Draw a goal: a ring at its place, and an arrow as it looks. */
+export function goal(context, { view, colours }, { x, y, ...pose }, colour) {
+  const px = view.toX(x), py = view.toY(y), yaw = pose.yaw ?? yawOf(pose), unit = view.ratio, radius = 9 * unit;
+  context.beginPath();
+  context.arc(px, py, radius, 0, 2 * Math.PI);
+  arrow(context, px + radius * Math.cos(yaw), py - radius * Math.sin(yaw), yaw, 22 * unit);
+  cased(context, colours, colour, 3 * unit);
+  context.beginPath();
+  context.arc(px, py, 3.5 * unit, 0, 2 * Math.PI);
+  context.fillStyle = colour;
+  context.fill();
+}
+
+/** Draw dots at places in pixels, with a dark edge, each of three by three pixels. */
+export function dots(context, places, colour, unit) {
+  for (const [style, size] of [["rgba(0,0,0,0.3)", 5], [colour, 3]]) {
+    const far = Math.floor((size * unit) / 2), side = Math.round(size * unit);
+    context.fillStyle = style;
+    for (const place of places) if (place) context.fillRect(Math.round(place[0]) - far, Math.round(place[1]) - far, side, side);
   }
 }
 
@@ -309,20 +425,24 @@ export function arrow(context, x, y, yaw, length) {
 /** Angle as a text. */
 export function degrees(angle) { return `${((angle * 180) / Math.PI).toFixed(0)}°`; }
 
-/** Class of layer by type; `rate` is how often at most messages are needed (Hz). */
+/**
+ * Class of layer by type; `rate` is how often at most messages are needed (Hz), `form` how it looks in the list, and
+ * `role` its colour in the palette where a system has one robot.
+ */
 export const KINDS = {
-  "nav_msgs/msg/OccupancyGrid": { make: Grid, rate: 2, order: 0 },
-  "sensor_msgs/msg/LaserScan": { make: Scan, rate: 0, order: 1 },
-  "sensor_msgs/msg/PointCloud2": { make: Cloud, rate: 10, order: 1 },
-  "sensor_msgs/msg/PointCloud": { make: Cloud, rate: 10, order: 1 },
-  "sensor_msgs/msg/Range": { make: Cone, rate: 20, order: 2 },
-  "nav_msgs/msg/Odometry": { make: Odometry, rate: 0, order: 2 },
-  "nav_msgs/msg/Path": { make: Outline, rate: 10, order: 3 },
-  "geometry_msgs/msg/PolygonStamped": { make: Outline, rate: 20, order: 3 },
-  "geometry_msgs/msg/PointStamped": { make: Outline, rate: 20, order: 3 },
-  "geometry_msgs/msg/PoseStamped": { make: Poses, rate: 20, order: 3 },
-  "geometry_msgs/msg/PoseWithCovarianceStamped": { make: Poses, rate: 20, order: 3 },
-  "geometry_msgs/msg/PoseArray": { make: Poses, rate: 10, order: 3 },
-  "visualization_msgs/msg/Marker": { make: Markers, rate: 0, order: 4, every: true },
-  "visualization_msgs/msg/MarkerArray": { make: Markers, rate: 0, order: 4, every: true },
+  "nav_msgs/msg/OccupancyGrid": { make: Grid, rate: 2, order: 0, form: "cells" },
+  "sensor_msgs/msg/LaserScan": { make: Scan, rate: 0, order: 1, form: "beams", role: "scan" },
+  "sensor_msgs/msg/PointCloud2": { make: Cloud, rate: 10, order: 1, form: "heights" },
+  "sensor_msgs/msg/PointCloud": { make: Cloud, rate: 10, order: 1, form: "heights" },
+  "sensor_msgs/msg/CameraInfo": { make: Sight, rate: 2, order: 1, form: "area", role: "camera" },
+  "sensor_msgs/msg/Range": { make: Cone, rate: 20, order: 2, form: "area" },
+  "visualization_msgs/msg/Marker": { make: Markers, rate: 0, order: 3, every: true, form: "marks" },
+  "visualization_msgs/msg/MarkerArray": { make: Markers, rate: 0, order: 3, every: true, form: "marks" },
+  "nav_msgs/msg/Odometry": { make: Odometry, rate: 0, order: 4, form: "line", role: "trail" },
+  "nav_msgs/msg/Path": { make: Outline, rate: 10, order: 6, form: "line", role: "path" },
+  "geometry_msgs/msg/PolygonStamped": { make: Outline, rate: 20, order: 6, form: "area" },
+  "geometry_msgs/msg/PointStamped": { make: Outline, rate: 20, order: 6, form: "ring" },
+  "geometry_msgs/msg/PoseStamped": { make: Poses, rate: 20, order: 7, form: "arrow", role: "goal" },
+  "geometry_msgs/msg/PoseWithCovarianceStamped": { make: Poses, rate: 20, order: 7, form: "arrow" },
+  "geometry_msgs/msg/PoseArray": { make: Poses, rate: 10, order: 7, form: "arrow" },
 };

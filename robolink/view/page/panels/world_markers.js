@@ -1,41 +1,82 @@
 // Markers of visualization_msgs seen from above: Marker and MarkerArray, with their lifetimes and deletions.
+//
+// What rests in the fixed frame is part of the ground, which is drawn only when it changes. By their `ns`, as the world
+// node names them: "floor" and "paint" lie below maps, "signs" are shown as pictures, "robots" are drawn with their heading.
 
 import { compose, poseOf, rotate } from "../tf.js";
+import { css, picture, sign } from "./world_pictures.js";
 import { around } from "./world_view.js";
 
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, TEXT, MESH, TRIANGLES] = Array(12).keys();
 const DELETE = 2, DELETE_ALL = 3;
-
-function css({ r, g, b, a }) { return `rgba(${Math.round(255 * r)},${Math.round(255 * g)},${Math.round(255 * b)},${a})`; }
+const REST = 1000; // ms without a message after which a topic's markers rest
+const SHADOW = "rgba(0,0,0,0.28)", EDGE = "rgba(0,0,0,0.4)";
+const FLOOR = /^(floor|paint)$/, UPRIGHT = "wall_faces"; // seen from above, upright faces are nothing
 
 export class Markers {
-  constructor(topic, colour) {
+  constructor(topic) {
     this.topic = topic;
-    this.colour = colour;
     this.shown = new Map();
+    this.since = 0;
   }
 
   /** Take each message: what it adds, changes or deletes. */
   update(message, scene) {
+    const wasGround = this.isGround;
+    this.since = performance.now();
     for (const marker of message.markers ?? [message]) {
       const key = `${marker.ns}\n${marker.id}`;
       if (marker.action === DELETE_ALL) this.shown.clear();
       else if (marker.action === DELETE) this.shown.delete(key);
-      else {
-        const { sec, nanosec } = marker.lifetime;
-        const life = sec * 1000 + nanosec / 1e6;
-        this.shown.set(key, { marker, until: life ? scene.now + life : Infinity, place: poseOf(marker.pose) });
+      else if (marker.ns !== UPRIGHT) {
+        const { sec, nanosec } = marker.lifetime, life = sec * 1000 + nanosec / 1e6;
+        this.shown.set(key, { marker, until: life ? scene.now + life : Infinity, place: poseOf(marker.pose), fill: css(marker.color) });
       }
     }
+    this.groundKey(scene);
+    if (wasGround || this.isGround) scene.groundChanged = true;
   }
 
   forget() { this.shown.clear(); }
 
-  draw(context, scene) {
+  /** Colours that are drawn, the first ones. */
+  get colours() {
+    const found = new Set();
+    for (const { marker, fill } of this.shown.values()) {
+      if (found.size < 6) found.add(marker.colors.length ? css(marker.colors[0]) : fill);
+    }
+    return [...found];
+  }
+
+  /** What lies in the ground, as a text that changes with it. */
+  groundKey(scene) {
+    const isQuiet = performance.now() - this.since > REST;
+    let count = 0;
+    for (const item of this.shown.values()) {
+      const { marker: { ns, header }, until } = item;
+      item.rests = ns !== "robots" && until === Infinity && header.frame_id.replace(/^\//, "") === scene.frames.fixed && (isQuiet || FLOOR.test(ns));
+      count += item.rests;
+    }
+    this.isGround = count > 0;
+    return `${count} ${this.since}`;
+  }
+
+  floor(context, scene) { this._each(context, scene, (item) => item.rests && FLOOR.test(item.marker.ns)); }
+
+  ground(context, scene) { this._each(context, scene, (item) => item.rests && !FLOOR.test(item.marker.ns)); }
+
+  draw(context, scene) { this._each(context, scene, ({ rests, marker }) => !rests && marker.ns !== "robots"); }
+
+  /** Markers of robots by the frames that they are in. */
+  bodies(scene) {
+    for (const item of this.shown.values()) if (item.marker.ns === "robots") scene.bodies.set(item.marker.header.frame_id, item);
+  }
+
+  _each(context, scene, wanted) {
     context.save();
-    for (const [key, { marker, until, place }] of this.shown) {
-      if (until < scene.now) this.shown.delete(key);
-      else shape(context, scene.view, marker, compose(scene.pose(marker.header.frame_id), place));
+    for (const [key, item] of this.shown) {
+      if (item.until < scene.now) this.shown.delete(key);
+      else if (wanted(item)) shape(context, scene, item, compose(scene.pose(item.marker.header.frame_id), item.place));
     }
     context.restore();
   }
@@ -63,48 +104,58 @@ export class Markers {
   }
 }
 
-function shape(context, view, marker, pose) {
-  const { type, scale, points, colors } = marker;
+/** Add the outline of a solid marker to a path; `at` gives the pixels of a point {x, y, z} of the marker. */
+export function trace(context, { type, scale, points }, at) {
+  const corners = type === CYLINDER || type === SPHERE ? round(scale) : type === TRIANGLES || type === LINE_STRIP ? points : box(scale);
+  if (type === TRIANGLES) for (let i = 0; i + 2 < corners.length; i += 3) loop(context, corners.slice(i, i + 3).map(at));
+  else loop(context, corners.map(at));
+}
+
+/** Radius of a solid marker, in metres. */
+export function radiusOf({ scale, points }) {
+  return points.length ? Math.max(...points.map(({ x, y }) => Math.hypot(x, y))) : Math.min(scale.x, scale.y) / 2;
+}
+
+function shape(context, scene, item, pose) {
+  const { marker, fill } = item, { type, scale, points, colors } = marker, { view } = scene;
   const at = (point) => {
     const p = rotate(pose, point.x, point.y, point.z);
     return [view.toX(pose.x + p[0]), view.toY(pose.y + p[1])];
   };
   const wide = (metres) => Math.max(1, metres * view.scale);
-  const tint = (i) => css(colors.length > i ? colors[i] : marker.color);
-  context.fillStyle = context.strokeStyle = css(marker.color);
+  const tint = (i) => (colors.length > i ? css(colors[i]) : fill);
+  context.fillStyle = context.strokeStyle = fill;
+  if (marker.ns === "signs") return sign(context, scene, item, at);
   switch (type) {
     case ARROW: {
       const [from, to] = points.length > 1 ? points : [{ x: 0, y: 0, z: 0 }, { x: scale.x, y: 0, z: 0 }];
-      pointed(context, at(from), at(to), wide(points.length > 1 ? scale.x : scale.y));
-      break;
+      return pointed(context, at(from), at(to), wide(points.length > 1 ? scale.x : scale.y));
     }
-    case CUBE: return polygon(context, box(scale).map(at));
-    case SPHERE: case CYLINDER: return polygon(context, round(scale).map(at));
+    case CUBE: case SPHERE: case CYLINDER: case MESH: return solid(context, marker, at, view.ratio);
     case LINE_STRIP: case LINE_LIST:
       context.lineWidth = wide(scale.x);
       context.lineCap = context.lineJoin = "round";
-      return lines(context, points.map(at), tint, type === LINE_LIST ? 2 : colors.length ? 1 : 0);
+      return lines(context, points.map(at), tint, type === LINE_LIST ? 2 : 1, colors.length > 0);
     case CUBE_LIST: case SPHERE_LIST: case POINTS: {
       const corners = type === SPHERE_LIST ? round(scale) : box(scale);
       points.forEach((point, i) => {
         context.fillStyle = tint(i);
-        polygon(context, corners.map((each) => at({ x: point.x + each.x, y: point.y + each.y, z: point.z })));
+        context.beginPath();
+        loop(context, corners.map((each) => at({ x: point.x + each.x, y: point.y + each.y, z: point.z })));
+        context.fill();
       });
       return undefined;
     }
     case TEXT: {
       const [x, y] = at({ x: 0, y: 0, z: 0 });
-      context.font = `${Math.max(8, scale.z * view.scale)}px system-ui`;
+      context.font = `${Math.max(10 * view.ratio, scale.z * view.scale)}px system-ui`;
       context.textBaseline = "middle";
       context.textAlign = "center";
-      return context.fillText(marker.text, x, y);
+      return scene.write(context, marker.text, x, y, fill);
     }
-    case MESH: return polygon(context, box(scale).map(at));
     case TRIANGLES:
-      for (let i = 0; i + 2 < points.length; i += 3) {
-        context.fillStyle = tint(i);
-        polygon(context, points.slice(i, i + 3).map(at));
-      }
+      if (colors.length) return flat(context, scene, item, pose);
+      return FLOOR.test(marker.ns) ? filled(context, marker, at) : solid(context, marker, at, view.ratio);
   }
   return undefined;
 }
@@ -112,31 +163,64 @@ function shape(context, view, marker, pose) {
 function box({ x, y }) { return [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => ({ x: (a * x) / 2, y: (b * y) / 2, z: 0 })); }
 
 function round({ x, y }) {
-  return Array.from({ length: 24 }, (_, i) => ({ x: (x / 2) * Math.cos((i * Math.PI) / 12), y: (y / 2) * Math.sin((i * Math.PI) / 12), z: 0 }));
+  return Array.from({ length: 32 }, (_, i) => ({ x: (x / 2) * Math.cos((i * Math.PI) / 16), y: (y / 2) * Math.sin((i * Math.PI) / 16), z: 0 }));
 }
 
-function polygon(context, corners) {
-  context.beginPath();
-  for (const [x, y] of corners) context.lineTo(x, y);
+/** Add a closed line to a path, always the same way round: parts of one path that overlap would else make holes. */
+function loop(context, corners) {
+  const turn = corners.reduce((sum, [x, y], i) => { const [nx, ny] = corners[(i + 1) % corners.length]; return sum + x * ny - nx * y; }, 0);
+  (turn < 0 ? corners.reverse() : corners).forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
   context.closePath();
+}
+
+function filled(context, marker, at) {
+  context.beginPath();
+  trace(context, marker, at);
   context.fill();
 }
 
-/** Draw lines between places: all joined in one path, or each pair (`step` 2) or part (1) in its own colour. */
-function lines(context, places, tint, step) {
-  if (!step) {
-    context.beginPath();
-    for (const [x, y] of places) context.lineTo(x, y);
-    context.stroke();
-    return;
-  }
+/** Fill a thing that stands on the floor, with its edge and its shadow. */
+function solid(context, marker, at, unit) {
+  const { fillStyle } = context;
+  context.fillStyle = SHADOW;
+  filled(context, marker, (point) => { const [x, y] = at(point); return [x + 2 * unit, y + 3 * unit]; });
+  context.strokeStyle = EDGE;
+  context.lineWidth = 1.5 * unit;
+  context.stroke(tracedPath(marker, at));
+  context.fillStyle = fillStyle;
+  filled(context, marker, at);
+}
+
+function tracedPath(marker, at) {
+  const path = new Path2D();
+  trace(path, marker, at);
+  return path;
+}
+
+/** Draw triangles of several colours that lie flat, as a picture that is made once. */
+function flat(context, { view }, item, pose) {
+  const { canvas, left, top, step } = (item.picture ??= picture(item.marker, "x", "y"));
+  const x = rotate(pose, step, 0, 0), y = rotate(pose, 0, step, 0), corner = rotate(pose, left, top, 0), s = view.scale;
+  context.save();
+  context.imageSmoothingEnabled = step * s < 1;
+  context.setTransform(x[0] * s, -x[1] * s, -y[0] * s, y[1] * s, view.toX(pose.x + corner[0]), view.toY(pose.y + corner[1]));
+  context.drawImage(canvas, 0, 0);
+  context.restore();
+}
+
+/** Draw lines between places: each pair (`step` 2), or joined (1); in one path, or each in its own colour. */
+function lines(context, places, tint, step, coloured) {
+  if (!coloured) context.beginPath();
   for (let i = 0; i + 1 < places.length; i += step) {
-    context.strokeStyle = tint(i);
-    context.beginPath();
-    context.moveTo(...places[i]);
+    if (coloured) {
+      context.strokeStyle = tint(i);
+      context.beginPath();
+    }
+    if (coloured || step === 2 || i === 0) context.moveTo(...places[i]);
     context.lineTo(...places[i + 1]);
-    context.stroke();
+    if (coloured) context.stroke();
   }
+  if (!coloured) context.stroke();
 }
 
 function pointed(context, [x, y], [ex, ey], width) {
@@ -146,5 +230,8 @@ function pointed(context, [x, y], [ex, ey], width) {
   context.moveTo(x, y);
   context.lineTo(ex - head * Math.cos(yaw), ey - head * Math.sin(yaw));
   context.stroke();
-  polygon(context, [[ex, ey], ...[2.6, -2.6].map((side) => [ex + head * Math.cos(yaw + side), ey + head * Math.sin(yaw + side)])]);
+  context.beginPath();
+  loop(context, [[ex, ey], ...[2.6, -2.6].map((side) => [ex + head * Math.cos(yaw + side), ey + head * Math.sin(yaw + side)])]);
+  context.fill();
 }
+

@@ -1,10 +1,16 @@
 // Pixel layer of the world panel: beams, points and trails, written into one image a frame.
 
+const BEAMS = 24; // of a scan that are drawn as lines
+const EIGHTH = 0x1f1f1f1f;
+
 /** Colour "#rrggbb" as one pixel of an ImageData. */
 export function pixel(colour) {
   const value = parseInt(colour.slice(1), 16);
   return (0xff000000 | ((value & 0xff) << 16) | (value & 0xff00) | (value >> 16)) >>> 0;
 }
+
+/** Colour "#rrggbb", translucent. */
+export function faint(colour, alpha) { return `${colour}${Math.round(alpha * 255).toString(16).padStart(2, "0")}`; }
 
 export class Pixels {
   constructor(view) {
@@ -12,7 +18,6 @@ export class Pixels {
     this.canvas = document.createElement("canvas");
     this.context = this.canvas.getContext("2d", { alpha: false, willReadFrequently: true });
     this.width = this.height = 0;
-    this.bold = false; // beams are nine pixels each, instead of four
   }
 
   /** Follow the size of the view's canvas; true if it changed. */
@@ -46,26 +51,36 @@ export class Pixels {
     }
   }
 
-  /** Draw the ends of a scan's beams. `turn` is [x, y, xx, xy, yx, yy]: the sensor's place and its axes. */
+  /** Draw the ends of a scan's beams, and some beams. `turn` is [x, y, xx, xy, yx, yy]: the sensor's place and its axes. */
   beams(scan, [px, py, xx, xy, yx, yy], colour) {
-    const { view, width, height, pixels, bold } = this, { scale } = view, { ranges, range_min: least, range_max: most } = scan;
-    const left = width / 2 + (px - view.x) * scale, top = height / 2 - (py - view.y) * scale;
+    const { view, width, height, pixels } = this, { scale } = view, { ranges, range_min: least, range_max: most } = scan;
+    const left = width / 2 + (px - view.x) * scale, top = height / 2 - (py - view.y) * scale, every = Math.ceil(ranges.length / BEAMS);
     const stepCos = Math.cos(scan.angle_increment), stepSin = Math.sin(scan.angle_increment);
     let cos = Math.cos(scan.angle_min), sin = Math.sin(scan.angle_min);
     for (let i = 0; i < ranges.length; i++) {
       const range = ranges[i];
       if (range >= least && range <= most) {
-        const far = range * scale;
-        const x = (left + far * (cos * xx + sin * yx)) | 0, y = (top - far * (cos * xy + sin * yy)) | 0;
+        const far = range * scale, dx = far * (cos * xx + sin * yx), dy = -far * (cos * xy + sin * yy), x = (left + dx) | 0, y = (top + dy) | 0;
+        if (i % every === 0) this._beam(left, top, dx, dy, colour);
         if (x > 0 && y > 0 && x < width && y < height) {
           const at = y * width + x;
           pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colour;
-          if (bold) pixels[at + 1] = pixels[at + width] = pixels[at + width + 1] = pixels[at + width - 1] = pixels[at - width + 1] = colour;
         }
       }
       const next = cos * stepCos - sin * stepSin;
       sin = sin * stepCos + cos * stepSin;
       cos = next;
+    }
+  }
+
+  /** Blend an eighth of a colour into the pixels of a line: four colours at once, which stay within their bytes. */
+  _beam(x, y, dx, dy, colour) {
+    const { width, height, pixels } = this, steps = Math.min(4096, Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)))), part = (colour >>> 3) & EIGHTH;
+    const ix = dx / steps, iy = dy / steps;
+    for (let i = 0; i < steps; i++, x += ix, y += iy) {
+      if (x < 0 || y < 0 || x >= width || y >= height) continue;
+      const at = (y | 0) * width + (x | 0), before = pixels[at];
+      pixels[at] = before - ((before >>> 3) & EIGHTH) + part;
     }
   }
 

@@ -1,58 +1,97 @@
 // Scene of the world panel: its layers, the robots, and one picture of them a frame.
 
-import { compose, poseOf, yawOf, IDENTITY } from "../tf.js";
-import { arrow, degrees, KINDS } from "./world_layers.js";
+import { yawOf, IDENTITY } from "../tf.js";
+import { degrees, goal, KINDS } from "./world_layers.js";
 import { Pixels, pixel } from "./world_pixels.js";
+import { drawRobots, reachOf, robotsOf } from "./world_robots.js";
 import { around } from "./world_view.js";
 
-const COLOURS = ["#ffb300", "#29b6f6", "#66bb6a", "#ef5350", "#ab47bc", "#26c6da", "#d4e157", "#ff7043", "#ec407a"];
-const MOST_NAMES = 40, MOST_SMOOTH = 30; // names that are written; robots that are drawn by smooth paths
-const AXES = [pixel("#ef5350"), pixel("#43a047")]; // x and y of a frame
-const ROBOT = /(^|\/)(base_link|base_footprint)$/;
-const BODY = 0.15; // metres: radius of a robot whose shape nobody tells
+const ROBOTS = 5; // between the orders of layers: robots are drawn here
+const SERIES = 8; // colours --c1 to --c8
+const MOST_NAMES = 40, MOST_SMOOTH = 30; // names that are written; robots whose scans and trails are drawn by smooth paths
+const ROLES = { back: "ground", halo: "ground", text: "fg" }, NAMES = ["grid", "dim", "robot", "goal", "scan", "trail", "path", "camera", "axis-x", "axis-y"];
+const QUIET = /(^|\/)(ground_truth|depth\/camera_info)$/; // shown only where it is switched on: what is like another layer
 
 export class Scene {
-  /** @param view camera  @param off names of layers that are switched off */
-  constructor(app, view, off) {
-    this.app = app;
-    this.view = view;
-    this.off = off;
+  /** @param view camera  @param off, on names of layers that are switched off, and on against the default */
+  constructor(app, view, off, on) {
+    Object.assign(this, { app, view, off, on });
     this.frames = app.tf;
     this.layers = new Map(); // by topic name: {layer, kind, seen, shown, handle}
     this.odometry = new Map();
+    this.bodies = new Map(); // markers of robots by frame
+    this.stamps = new Map();
+    this.drawn = []; // robots of the last picture
     this.pixels = new Pixels(view);
     this.context = view.canvas.getContext("2d", { alpha: false });
     this.loose = new Set(); // frames that are not connected to the fixed one
     this.groundChanged = true;
     this.now = 0;
     this.wanted = null; // a pose that is being set
+    this.many = false;
     this.theme();
   }
 
   theme() {
-    const { colour } = this.app;
-    this.colours = { back: colour("ground"), line: colour("line"), text: colour("fg"), robot: colour("accent"), dim: colour("dim") };
-    const grey = (value) => (0xff000000 | (value << 16) | (value << 8) | value) >>> 0;
-    const [free, wall] = this.app.isLight() ? [250, 40] : [44, 225];
-    this.occupancy = new Uint32Array(256).map((_, i) => (i <= 100 ? grey(Math.round(free + ((wall - free) * i) / 100)) : 0));
+    const { colour } = this.app, [free, wall] = this.app.isLight() ? [[255, 150], [40, 255]] : [[255, 26], [225, 255]];
+    this.colours = Object.fromEntries([...Object.entries(ROLES), ...NAMES.map((name) => [name, name])].map(([name, variable]) => [name, colour(variable)]));
+    this.series = Array.from({ length: SERIES }, (_, i) => colour(`c${i + 1}`));
+    const cell = (i) => { // free floor lets see what is below, a wall does not
+      const [grey, alpha] = free.map((from, k) => Math.round(from + ((wall[k] - from) * i) / 100));
+      return ((alpha << 24) | (grey << 16) | (grey << 8) | grey) >>> 0;
+    };
+    this.occupancy = new Uint32Array(256).map((_, i) => (i <= 100 ? cell(i) : 0));
     this.costs = new Uint32Array(256).map((_, i) => cost(i));
-    for (const entry of this.layers.values()) if (entry.seen && entry.layer.ground) this._update(entry, entry.layer.message);
-    this.groundChanged = true;
+    for (const entry of this.layers.values()) if (entry.seen && entry.layer.map) this._update(entry, entry.layer.message);
+    this.stamps.clear();
+    this._paint();
+  }
+
+  /** Give each layer its colour: its role's, or where there are several robots, that of the robot whose topic it is. */
+  _paint() {
+    const entries = [...this.layers].sort(([a], [b]) => (a < b ? -1 : 1)), used = new Set();
+    const spaces = entries.filter(([, { topic }]) => topic.type === "nav_msgs/msg/Odometry").map(([name]) => name.slice(0, name.lastIndexOf("/") + 1));
+    this.spaces = [...new Set(spaces)];
+    let next = 0;
+    for (const [name, { layer, kind: { role } }] of entries) {
+      const own = this.spaces.length > 1 && this.spaceColour(name);
+      const isFirst = role && !used.has(role) && !QUIET.test(name);
+      layer.colour = own || (isFirst ? this.colours[role] : this.series[next++ % SERIES]);
+      if (isFirst) used.add(role);
+    }
+    this.groundChanged = this.dirty = true;
+  }
+
+  /** Colour of the robot of a topic, or undefined. */
+  spaceColour(name) {
+    const at = this.spaces.findIndex((each) => name.startsWith(each));
+    return at < 0 ? undefined : this.series[at % SERIES];
   }
 
   /** Follow the topics that exist: a layer for each that can be drawn. */
   follow() {
+    const { size } = this.layers;
     for (const topic of this.app.topics.values()) {
       const kind = topic.channel && !topic.channel.hidden && KINDS[topic.type];
       if (kind && !this.layers.has(topic.name)) this._open(topic, kind);
     }
+    if (this.layers.size > size) this._paint();
   }
 
   _open(topic, kind) {
-    const layer = new kind.make(topic, COLOURS[this.layers.size % COLOURS.length]);
-    const entry = { layer, kind, topic, seen: null, handle: null };
+    const entry = { layer: new kind.make(topic), kind, topic, seen: null, handle: null };
     this.layers.set(topic.name, entry);
-    if (!this.off.has(topic.name)) this._listen(entry);
+    if (this.shows(topic.name)) this._listen(entry);
+    return entry;
+  }
+
+  /** Show a message that the page itself publishes. */
+  sent(name, type, message) {
+    const entry = this.layers.get(name) ?? this._open(this.app.store.get(name), KINDS[type]);
+    entry.own = true;
+    entry.seen = message;
+    this._update(entry, message);
+    this._paint();
   }
 
   _listen(entry) {
@@ -65,8 +104,8 @@ export class Scene {
   }
 
   show(name, wanted) {
-    if (wanted) this.off.delete(name);
-    else this.off.add(name);
+    this[wanted ? "off" : "on"].delete(name);
+    this[wanted ? "on" : "off"].add(name);
     const entry = this.layers.get(name);
     if (entry && wanted !== Boolean(entry.handle)) {
       if (wanted) this._listen(entry);
@@ -81,12 +120,15 @@ export class Scene {
   /** Forget what layers have gathered of messages before. */
   forget() {
     this.odometry.clear();
-    for (const { layer } of this.layers.values()) layer.forget?.();
+    for (const entry of this.layers.values()) {
+      entry.layer.forget?.();
+      entry.own = false;
+    }
     this.groundChanged = this.dirty = true;
   }
 
   /** True if a layer, or one of tf, trails, grid and names, is shown. */
-  shows(name) { return !this.off.has(name); }
+  shows(name) { return this.on.has(name) || !(this.off.has(name) || QUIET.test(name) || (name === "tf" && this.drawn.length > 0)); }
 
   close() { for (const { handle } of this.layers.values()) handle?.close(); }
 
@@ -115,12 +157,12 @@ export class Scene {
   /** Layers that have something to show; those of topics that are gone have not. */
   _visible() {
     const { connection } = this.app;
-    return [...this.layers.values()].filter(({ handle, layer, seen, topic }) => handle && (seen || layer.shown?.size) && (topic.channel || !connection.isOpen));
+    return [...this.layers.values()].filter(({ handle, layer, seen, topic, own }) => handle && (seen || layer.shown?.size) && (topic.channel || own || !connection.isOpen));
   }
 
   /** Look whether maps have moved in the fixed frame: seldom, since the ground is drawn anew then. */
   settle() {
-    const places = this._visible().filter(({ layer }) => layer.ground).map(({ layer }) => Object.values(layer.frame(this)).join());
+    const places = this._visible().map(({ layer }) => layer.groundKey?.(this) ?? "");
     const key = `${this.frames.fixed} ${places.join(" ")}`;
     this.groundChanged ||= key !== this.groundKey;
     this.groundKey = key;
@@ -177,19 +219,21 @@ export class Scene {
     this.loose.clear();
     this.tfVersion = this.frames.version;
     this.trails = this.shows("trails");
-    const visible = this._visible().sort((a, b) => a.kind.order - b.kind.order), { pixels, context } = this;
-    if (pixels.resize() || this.view.changed || this.groundChanged) this._ground(visible);
+    const visible = this._visible().sort((a, b) => a.kind.order - b.kind.order), { pixels, context } = this, { size } = this.bodies;
+    this.bodies.clear();
+    this._parts(visible, "bodies", this);
+    const robots = this.drawn = this.robots();
+    this.many = robots.length > MOST_SMOOTH || visible.length > 4 * MOST_SMOOTH;
+    if (pixels.resize() || this.view.changed || this.groundChanged || size !== this.bodies.size) this._ground(visible);
     pixels.begin();
-    pixels.bold = visible.length < MOST_SMOOTH;
     this._parts(visible, "pixels", this);
-    const robots = this.robots(), many = robots.length > MOST_SMOOTH;
     if (this.shows("tf")) this._frames();
-    if (many) this._smallRobots(robots);
     context.putImageData(pixels.image, 0, 0);
-    this._parts(visible.filter(({ seen, layer }) => seen || layer.shown), "draw", context, this);
-    if (!many) this._robots(context, robots);
-    if (this.shows("tf") && !many) this._frameNames(context, robots);
-    if (this.wanted) this._wanted(context);
+    this._parts(visible.filter(({ kind }) => kind.order < ROBOTS), "draw", context, this);
+    drawRobots(context, this, robots);
+    this._parts(visible.filter(({ kind }) => kind.order > ROBOTS), "draw", context, this);
+    if (this.shows("names") && !this.many) this._names(context, robots);
+    if (this.wanted) goal(context, this, this.wanted, this.colours.goal);
     if (this.app.painted) this._measure(visible);
   }
 
@@ -207,8 +251,10 @@ export class Scene {
     this.view.changed = this.groundChanged = false;
     context.fillStyle = this.colours.back;
     context.fillRect(0, 0, this.pixels.width, this.pixels.height);
-    this._parts(visible, "ground", context, this);
+    this._parts(visible, "floor", context, this);
+    this._parts(visible, "map", context, this);
     if (this.shows("grid")) this._grid(context);
+    this._parts(visible, "ground", context, this);
     this.pixels.keepGround();
     this._parts(visible, "groundPixels", this);
   }
@@ -217,7 +263,7 @@ export class Scene {
     const { view } = this, { width, height } = this.pixels;
     let step = 1;
     for (let i = 0; step * view.scale < 24 || step * view.scale > 240; i++) step = step * view.scale < 24 ? step * (i % 2 ? 2 : 5) : step / (i % 2 ? 2 : 5);
-    context.strokeStyle = this.colours.line;
+    context.strokeStyle = this.colours.grid;
     context.lineWidth = 1;
     context.beginPath();
     const left = view.x - width / 2 / view.scale, bottom = view.y - height / 2 / view.scale;
@@ -230,69 +276,50 @@ export class Scene {
       context.lineTo(width, Math.round(view.toY(y)) + 0.5);
     }
     context.stroke();
-    context.fillStyle = this.colours.dim;
-    context.font = `${11 * view.ratio}px system-ui`;
-    context.fillText(`${Number(step.toPrecision(2))} m`, 8, height - 8);
+    this._font(context, 11);
+    this.write(context, `${Number(step.toPrecision(2))} m`, 8 * view.ratio, height - 8 * view.ratio);
   }
 
-  /** Robots: frames named base_link or base_footprint, and odometry whose frame tf does not know. {name, pose}. */
+  /** Robots with what is drawn of them: {name, frame, pose, body, colour}. */
   robots() {
-    const found = new Map();
-    for (const name of this.frames.nodes.keys()) {
-      if (!ROBOT.test(name)) continue;
-      const robot = name.replace(ROBOT, "") || "robot";
-      if (!found.has(robot) || name.endsWith("base_link")) found.set(robot, { name: robot, pose: this.pose(name) });
-    }
-    for (const [child, { message, topic }] of this.odometry) {
-      if (this.frames.nodes.has(child) || !topic.channel) continue;
-      const name = child.replace(ROBOT, "") || topic.name.replace(/^\/|\/[^/]*$/g, "") || "robot";
-      if (!found.has(name)) found.set(name, { name, pose: compose(this.pose(message.header.frame_id), poseOf(message.pose.pose)) });
-    }
-    return [...found.values()];
+    return robotsOf(this).map((robot) => ({ ...robot, body: this.bodies.get(robot.frame), colour: (this.spaces.length > 1 && this.spaceColour(`/${robot.name}/`)) || this.colours.trail }));
   }
 
-  _robots(context, robots) {
-    const { view } = this, radius = this._radius();
-    context.strokeStyle = context.fillStyle = this.colours.robot;
-    context.beginPath();
-    for (const { pose } of robots) {
-      this._nose(pose, radius).forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
-      context.closePath();
-    }
-    context.fill();
-    if (!this.shows("names")) return;
-    context.font = `${12 * view.ratio}px system-ui`;
-    context.textAlign = "left";
+  _font(context, size, align = "left") {
+    context.font = `${size * this.view.ratio}px system-ui`;
+    context.textAlign = align;
     context.textBaseline = "alphabetic";
-    context.fillStyle = this.colours.text;
-    for (const { name, pose } of robots) context.fillText(name, view.toX(pose.x) + radius + 4, view.toY(pose.y) - radius);
   }
 
-  _radius() { return Math.max(BODY * this.view.scale, 5 * this.view.ratio); }
-
-  /** Corners of the triangle that shows where a robot is and where it looks. */
-  _nose(pose, radius) {
-    const x = this.view.toX(pose.x), y = this.view.toY(pose.y), yaw = yawOf(pose);
-    return [[radius, 0], [0.8 * radius, 2.5], [0.8 * radius, -2.5]].map(([far, turn]) => [x + far * Math.cos(yaw + turn), y - far * Math.sin(yaw + turn)]);
+  /** Write a text that can be read on any floor. */
+  write(context, text, x, y, colour = this.colours.text) {
+    context.lineJoin = "round";
+    context.lineWidth = 3 * this.view.ratio;
+    context.strokeStyle = this.colours.halo;
+    context.strokeText(text, x, y);
+    context.fillStyle = colour;
+    context.fillText(text, x, y);
   }
 
-  /** Many robots are drawn by pixels: smooth paths would take longer than all the rest. */
-  _smallRobots(robots) {
-    const radius = this._radius(), colour = pixel(this.colours.robot);
-    for (const { pose } of robots) {
-      const [a, b, c] = this._nose(pose, radius);
-      for (const [[x0, y0], [x1, y1]] of [[a, b], [b, c], [c, a]]) this.pixels.line(x0, y0, x1, y1, colour);
+  /** Names: of robots where there are several, and of frames where they are shown. */
+  _names(context, robots) {
+    const { view } = this;
+    this._font(context, 12);
+    for (const robot of robots.length > 1 ? robots : []) {
+      const radius = Math.max(reachOf(robot) * view.scale, 5 * view.ratio);
+      this.write(context, robot.name, view.toX(robot.pose.x) + radius, view.toY(robot.pose.y) - radius);
     }
+    if (this.shows("tf")) this._frameNames(context, robots);
   }
 
   _frames() {
-    const { view, pixels } = this, length = Math.max(0.25 * view.scale, 10 * view.ratio);
+    const { view, pixels } = this, axes = ["axis-x", "axis-y"].map((name) => pixel(this.colours[name])), length = Math.max(0.25 * view.scale, 10 * view.ratio);
     for (const name of this.frames.names()) {
       const pose = this.frames.lookup(name);
       if (!pose) continue;
       const x = view.toX(pose.x), y = view.toY(pose.y), yaw = yawOf(pose), cos = length * Math.cos(yaw), sin = length * Math.sin(yaw);
-      pixels.line(x, y, x + cos, y - sin, AXES[0]);
-      pixels.line(x, y, x - sin, y - cos, AXES[1]);
+      pixels.line(x, y, x + cos, y - sin, axes[0]);
+      pixels.line(x, y, x - sin, y - cos, axes[1]);
     }
   }
 
@@ -300,25 +327,14 @@ export class Scene {
   _frameNames(context, robots) {
     const { view } = this, apart = 40 * view.ratio / view.scale, near = (a, b) => Math.hypot(a.x - b.x, a.y - b.y) < apart;
     const poses = this.frames.names().map((name) => [name, this.frames.lookup(name)]).filter(([, pose]) => pose && !robots.some((each) => near(each.pose, pose)));
-    if (!this.shows("names") || poses.length > MOST_NAMES) return;
-    context.font = `${10 * view.ratio}px system-ui`;
-    context.textAlign = "left";
-    context.fillStyle = this.colours.dim;
+    if (poses.length > MOST_NAMES) return;
+    this._font(context, 10);
     const rows = new Map(); // names of frames at one place go below each other
     for (const [name, pose] of poses) {
       const x = Math.round(view.toX(pose.x)), y = Math.round(view.toY(pose.y)), key = `${x >> 4},${y >> 4}`, row = rows.get(key) ?? 1;
       rows.set(key, row + 1);
-      context.fillText(name, x + 6, y + row * 12 * view.ratio);
+      this.write(context, name, x + 6, y + row * 12 * view.ratio, this.colours.dim);
     }
-  }
-
-  _wanted(context) {
-    const { view } = this, { x, y, yaw } = this.wanted;
-    context.strokeStyle = "#ec407a";
-    context.lineWidth = 3;
-    context.beginPath();
-    arrow(context, view.toX(x), view.toY(y), yaw, 40 * view.ratio);
-    context.stroke();
   }
 
   /** Rectangle around all that is shown, or null. */
@@ -330,8 +346,9 @@ export class Scene {
   /** What is at a place: texts with the topic's name. */
   hover([x, y]) {
     const reach = (8 * this.view.ratio) / this.view.scale, found = [];
-    for (const { name, pose } of this.robots()) {
-      if (Math.hypot(pose.x - x, pose.y - y) < Math.max(reach, BODY)) found.push(`${name} (${pose.x.toFixed(2)}, ${pose.y.toFixed(2)}, ${degrees(yawOf(pose))})`);
+    for (const robot of this.drawn) {
+      const { name, pose } = robot;
+      if (Math.hypot(pose.x - x, pose.y - y) < Math.max(reach, reachOf(robot))) found.push(`${name} (${pose.x.toFixed(2)}, ${pose.y.toFixed(2)}, ${degrees(yawOf(pose))})`);
     }
     for (const { layer, topic } of this._visible()) {
       const text = found.length < 6 && layer.hover(x, y, reach, this);

@@ -4,6 +4,7 @@ import { isTyping } from "../dom.js";
 
 const CLOSEST = 5000, FARTHEST = 0.05; // pixels a metre
 const WIDE = 1e6; // metres from the origin: what is farther away, or no number, is not looked at
+const LEAST = 1; // metres that are shown at least
 const CLICK = 5; // pixels that a click may move
 
 /** Rectangle around points, or null; those that are nowhere do not count. */
@@ -26,6 +27,7 @@ export class View {
     this.scale = 50 * this.ratio;
     this.auto = true; // fits by itself until somebody moves it
     this.changed = true;
+    this.covered = 0; // pixels at the right side that something lies upon
     this.pointer = null; // place of the mouse in metres
     this._held = new Map();
     for (const name of ["pointerdown", "pointermove", "pointerup", "pointercancel", "pointerleave"]) canvas.addEventListener(name, (event) => this[`_${name}`](event));
@@ -55,8 +57,9 @@ export class View {
   }
 
   fit([left, bottom, right, top]) {
-    const { width, height } = this.canvas, margin = 1;
-    this.look((left + right) / 2, (bottom + top) / 2, 0.94 * Math.min(width / (right - left + margin), height / (top - bottom + margin)));
+    const { width, height } = this.canvas, edge = Math.min(20 * this.ratio, width / 20, height / 20), side = this.covered * this.ratio;
+    const scale = Math.min((width - side - 2 * edge) / Math.max(right - left, LEAST), (height - 2 * edge) / Math.max(top - bottom, LEAST));
+    this.look((left + right) / 2 + side / 2 / scale, (bottom + top) / 2, scale);
   }
 
   /** Come nearer by a factor around a point of the canvas, by default its middle. */

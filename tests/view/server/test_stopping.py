@@ -1,0 +1,307 @@
+"""STOP of the view's server: who presses and releases it, what pages are told, and zeros for who does not listen."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from robolink.control.stop_lock import PLAIN, QOS, TOPIC, StopLock
+from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
+from robolink.interfaces.std_msgs.msg import Bool
+from robolink.node import Node
+from robolink.serialization import serialize_message
+from robolink.view.server import Settings, View
+from robolink.view.server.publishing import moves
+from robolink.view.server.stopping import DRIVEN, drives_of
+from robolink.view.sources.live import LiveSource
+from robolink.wire import EndpointKind, EndpointToken
+from tests.support.view_clients import Client, Shown, shown, until
+from tests.view.server.test_publishing import Listener, advertise, forward
+
+HEARD_WITHIN = 0.3
+"""Longest time from a press to the first zeros, in seconds."""
+
+
+def press(client: Client, held: bool = True) -> None:
+    client.send("stop", held=held)
+
+
+def told(client: Client, held: bool, **more: Any) -> dict[str, Any]:
+    """Wait until a client is told that it holds, or not."""
+    return client.wait_for("stop", held=held, **more)
+
+
+class Heard:
+    """Messages on /e_stop."""
+
+    def __init__(self, node: Node, qos: Any = QOS) -> None:
+        self.all: list[bool] = []
+        self.subscription = node.create_subscription(Bool, TOPIC, lambda each: self.all.append(each.data), qos)
+
+    @property
+    def last(self) -> bool | None:
+        return self.all[-1] if self.all else None
+
+
+@contextmanager
+def second_view(system: Shown, **settings: Any) -> Iterator[View]:
+    """Another server of the same system."""
+    context = system.new_context()
+    source = LiveSource(Node("_view2", context=context, start_parameter_services=False))
+    try:
+        with View(source, Settings(**{"port": 0, **settings})) as view:
+            yield view
+    finally:
+        context.try_shutdown()
+
+
+@contextmanager
+def client_of(view: View, system: Shown) -> Iterator[Client]:
+    before, system.view = system.view, view
+    try:
+        with system.client() as client:
+            yield client
+    finally:
+        system.view = before
+
+
+def test_stop_is_said_to_all_pages_and_on_the_topic_until_anybody_releases_it() -> None:
+    with shown() as system, system.spinning(), system.client() as one, system.client() as other:
+        heard = Heard(system.node)
+        assert told(one, False)["unheard"] == {}
+        press(one)
+        assert told(one, True) == told(other, True)
+        until(lambda: heard.last is True)
+        late = Heard(system.node)
+        until(lambda: late.all[:1] == [True])
+        press(other, False)
+        told(one, False)
+        told(other, False)
+        until(lambda: heard.last is False and late.last is False)
+        until(lambda: not system.node.count_publishers(TOPIC))  # nobody says any more that it is released
+
+
+def test_a_page_that_goes_changes_nothing_and_one_that_comes_is_told() -> None:
+    with shown() as system, system.spinning():
+        robot = Listener(system)
+        with system.client() as page:
+            press(page)
+            told(page, True)
+        count = len(robot.heard)
+        until(lambda: len(robot.heard) > count + 30)  # for longer than the first second, too
+        assert not any(map(moves, robot.heard))
+        with system.client() as page:
+            told(page, True)
+
+
+def test_zeros_go_to_a_robot_that_does_not_listen_20_times_a_second_while_it_holds() -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        robot, stamped = Listener(system), Listener(system, TwistStamped, "/arm/cmd_vel")
+        other = Listener(system, Twist, "/velocity")
+        told(page, False, unheard={"/arm/cmd_vel": ["/robot"], "/cmd_vel": ["/robot"]})
+        press(page)
+        assert until(lambda: bool(robot.heard and stamped.heard)) < HEARD_WITHIN
+        took = until(lambda: len(robot.heard) >= 41)
+        assert 1.5 < took < 4.0
+        assert stamped.heard[-1].header.stamp.sec > 1_600_000_000
+        press(page, False)
+        told(page, False)
+        count = len(robot.heard)
+        until(lambda: not system.node.count_publishers("/cmd_vel"))
+        assert len(robot.heard) <= count + 2
+        assert not other.heard
+        assert not any(map(moves, robot.heard + stamped.heard))
+
+
+def test_robots_that_listen_get_zeros_in_the_first_second_only() -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        robot, changes = Listener(system), list[bool]()
+        lock = StopLock(system.node, changes.append)
+        told(page, False, obeyed=["/robot"], unheard={})
+        press(page)
+        until(lambda: lock.held)
+        until(lambda: bool(robot.heard))
+        until(lambda: not system.node.count_publishers("/cmd_vel"))
+        assert 10 <= len(robot.heard) <= 30
+        press(page, False)
+        until(lambda: not lock.held)
+        assert changes == [True, False]
+
+
+def test_while_it_holds_no_client_may_drive() -> None:
+    with shown() as system, system.spinning(), system.client() as page, system.client("foxglove.sdk.v1") as driver:
+        robot = Listener(system)
+        advertise(driver)
+        driver.publish(1, forward())
+        until(lambda: len(robot.heard) == 1)
+        press(page)
+        told(page, True)
+        for _ in range(5):
+            driver.publish(1, forward())
+        driver.settle()
+        messages = [each["message"] for each in driver.heard if each["op"] == "status"]
+        assert messages == ["/cmd_vel: not published: STOP holds (/e_stop)"]
+        driver.publish(1, serialize_message(Twist()))  # zeros are welcome
+        driver.settle()
+        press(page, False)
+        told(page, False)
+        driver.publish(1, forward())
+        until(lambda: moves(robot.heard[-1]))
+        assert sum(map(moves, robot.heard)) == 2
+
+
+@pytest.mark.parametrize("subprotocol", ["foxglove.sdk.v1", "foxglove.websocket.v1"])
+def test_a_client_of_foxglove_presses_and_releases_it_by_the_topic(subprotocol: str) -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        changes = list[bool]()
+        StopLock(system.node, changes.append)
+        with system.client(subprotocol) as client:
+            channel = {"id": 1, "topic": TOPIC, "encoding": "json", "schemaName": "std_msgs/msg/Bool"}
+            client.send("advertise", channels=[channel])
+            for held in (True, False, True):
+                client.publish(1, b'{"data": %s}' % str(held).lower().encode())
+                told(page, held)
+                until(lambda held=held: changes[-1:] == [held])  # type: ignore[misc]
+        press(page, False)  # the client has gone, and its true with it
+        until(lambda: changes == [True, False, True, False])
+
+
+@pytest.mark.parametrize("qos", [QOS, PLAIN], ids=["latched", "volatile"])
+def test_a_node_presses_and_releases_it_and_may_leave(qos: Any) -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        publisher = system.node.create_publisher(Bool, TOPIC, qos)
+        publisher.publish(Bool(data=True))
+        publisher.destroy()
+        told(page, True)
+        late = Heard(system.node)
+        until(lambda: late.last is True)
+        publisher = system.node.create_publisher(Bool, TOPIC, qos)
+        publisher.publish(Bool(data=False))
+        told(page, False)
+        until(lambda: late.last is False)
+        assert system.node.count_publishers(TOPIC) == 1
+
+
+def test_a_volatile_listener_that_starts_late_is_told() -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        press(page)
+        told(page, True)
+        late = Heard(system.node, PLAIN)
+        until(lambda: late.last is True)
+
+
+def test_a_server_that_comes_back_learns_that_it_is_held_from_a_robot() -> None:
+    with shown() as system, system.spinning():
+        lock = StopLock(system.node, lambda _: None)
+        with second_view(system) as view, client_of(view, system) as page:
+            press(page)
+            until(lambda: lock.held)
+        with second_view(system, read_only=True) as view, client_of(view, system) as page:
+            told(page, True)
+        with second_view(system) as view, client_of(view, system) as page:
+            told(page, True)
+            press(page, False)
+            until(lambda: not lock.held)
+            told(page, False)
+
+
+def test_two_servers_whose_presses_and_releases_cross_end_alike() -> None:
+    with shown() as system, system.spinning(), second_view(system) as other:
+        lock = StopLock(system.node, lambda _: None)
+        with system.client() as one, client_of(other, system) as two:
+            for turn in range(30):
+                press(one, turn % 2 == 0)
+                press(two, turn % 3 == 0)
+                one.settle()
+                two.settle()
+            press(two, False)
+            alike(system, other, lock)
+            press(one)
+            until(lambda: lock.held and system.view.hub.stopping.held and other.hub.stopping.held)  # type: ignore[union-attr]
+            press(two, False)
+            until(lambda: not (lock.held or system.view.hub.stopping.held or other.hub.stopping.held))  # type: ignore[union-attr]
+            alike(system, other, lock)
+
+
+def alike(system: Shown, other: View, lock: StopLock) -> None:
+    """Wait until all have thought the same for a second."""
+
+    def states() -> set[bool]:
+        assert system.view.hub.stopping is not None
+        assert other.hub.stopping is not None
+        return {lock.held, system.view.hub.stopping.held, other.hub.stopping.held}
+
+    since = time.monotonic()
+
+    def stayed() -> bool:
+        nonlocal since
+        if len(states()) > 1:
+            since = time.monotonic()
+        return time.monotonic() - since > 1.0
+
+    until(stayed)
+
+
+@pytest.mark.parametrize("settings", [{"read_only": True}, {}])
+def test_who_may_not_change_anything_sees_it_and_cannot_press_or_release_it(settings: dict[str, Any]) -> None:
+    with shown(**settings) as system, system.spinning(), system.client(token=bool(settings)) as page:
+        heard, robot = Heard(system.node), Listener(system)
+        publisher = system.node.create_publisher(Bool, TOPIC, QOS)
+        press(page)
+        assert "STOP is refused, since this connection is read-only" in page.wait_for("status")["message"]
+        assert not heard.all
+        publisher.publish(Bool(data=True))
+        told(page, True)
+        press(page, False)
+        assert "release of STOP is refused" in page.wait_for("status")["message"]
+        if settings:  # a server on which nobody may change anything says nothing itself
+            assert (heard.all, robot.heard) == ([True], [])
+
+
+@pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00", b"\x00\x01\x00\x00\x07", b"nonsense" * 100])
+def test_nonsense_on_the_topic_changes_nothing(payload: bytes) -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        publisher = system.node.create_publisher(Bool, TOPIC, QOS)
+        publisher.publish(payload)
+        page.settle()
+        publisher.publish(Bool(data=True))
+        told(page, True)
+        publisher.publish(Bool(data=False))
+        told(page, False)
+
+
+# Who obeys
+
+
+def end(node: str, kind: str, topic: str, type_name: str = "") -> EndpointToken:
+    types = {"/e_stop": "std_msgs/msg/Bool"}
+    name = type_name or types.get(topic, DRIVEN[0])
+    namespace, _, own = node.rpartition("/")
+    return EndpointToken(0, "1", "1", "1", EndpointKind[kind], "", namespace or "/", own, topic, name, "h", QOS)
+
+
+def test_a_base_that_listens_obeys_and_one_that_does_not_is_named() -> None:
+    ends = [end("/a", "SUBSCRIPTION", "/a/cmd_vel"), end("/a", "SUBSCRIPTION", TOPIC)]
+    ends += [end("/b", "SUBSCRIPTION", "/b/cmd_vel"), end("/teleop", "PUBLISHER", "/b/cmd_vel")]
+    found = drives_of(ends)
+    assert (found.obeyed, found.unheard, set(found.deaf)) == (["/a"], {"/b/cmd_vel": ["/b"]}, {"/b/cmd_vel"})
+    assert set(found.all_of_them) == {"/a/cmd_vel", "/b/cmd_vel"}
+
+
+def test_a_base_behind_a_mux_that_listens_gets_zeros_and_no_warning() -> None:
+    mux = [end("/twist_mux", "SUBSCRIPTION", topic) for topic in ("/nav/cmd_vel", TOPIC)]
+    ends = [*mux, end("/twist_mux", "PUBLISHER", "/cmd_vel_out"), end("/base", "SUBSCRIPTION", "/cmd_vel_out")]
+    found = drives_of(ends)
+    assert (found.obeyed, found.unheard, set(found.deaf)) == (["/twist_mux"], {}, {"/cmd_vel_out"})
+    found = drives_of([*ends, end("/joystick", "PUBLISHER", "/cmd_vel_out")])
+    assert found.unheard == {"/cmd_vel_out": ["/base"]}
+
+
+def test_commands_and_other_topics_are_no_robots() -> None:
+    ends = [end("/_robolink_echo", "SUBSCRIPTION", "/cmd_vel"), end("/_robolink_view", "SUBSCRIPTION", TOPIC)]
+    ends += [end("/a", "SUBSCRIPTION", "/speed"), end("/a", "SUBSCRIPTION", "/cmd_vel", "std_msgs/msg/String")]
+    assert drives_of(ends) == drives_of(())
