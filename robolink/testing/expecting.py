@@ -12,8 +12,10 @@ if TYPE_CHECKING:
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.task import Future
+    from robolink.testing.recorder import Topic
     from robolink.testing.stage import Stage
     from robolink.testing.story import Conversation, Story
+    from robolink.transport import Sample
 
 T = TypeVar("T")
 
@@ -72,14 +74,23 @@ class Expecting:
         tried, recorder = 0, self._story.recorder
         with recorder.listening(name) as queue:
             begin, own = max(self._begin, self._found.get(name, 0)), self._story.graph.own_name
-            earlier = recorder.since(name, begin, but=own)
-            # The queue repeats what was kept for late subscriptions, or came while it was made. An attachment has the
-            # publisher's id and a sequence number: no two messages share one.
-            waiting, seen = deque(earlier), {sample.attachment for _, sample in earlier if sample.attachment}
+            # The queue repeats what was kept for late subscriptions. The recorder has what came while the queue was
+            # made, and tells of it later where messages come on a thread of their own: so both are looked at each time.
+            # An attachment has the publisher's id and a sequence number: no two messages share one.
+            waiting: deque[tuple[Topic, Sample]] = deque()
+            numbers: set[int] = set()
+            attachments: set[bytes] = set()
+
+            def take() -> None:
+                for each in (*recorder.since(name, begin, but=own, seen=numbers), *queue.take()):
+                    attachment = each[1].attachment
+                    if not attachment or attachment not in attachments:
+                        attachments.add(attachment)
+                        waiting.append(each)
 
             def came() -> bool:
                 nonlocal tried
-                waiting.extend(each for each in queue.take() if each[1].attachment not in seen)
+                take()
                 while waiting:
                     topic, sample = waiting.popleft()
                     self._found[name] = recorder.after(name, sample)

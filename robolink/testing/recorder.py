@@ -104,15 +104,19 @@ class Recorder:
         """Return a number that is above those of all that was heard so far, and below those of what comes."""
         return next(self._numbers)
 
-    def since(self, name: str, number: int, *, but: str) -> list[tuple[Topic, Sample]]:
+    def since(self, name: str, number: int, *, but: str, seen: set[int]) -> list[tuple[Topic, Sample]]:
         """List what is still retained of a topic from this number on, in the order in which it was heard.
 
-        What the node `but` has published is left out.
+        What the node `but` has published is left out, and what has a number that is `seen`; all others are added to it.
         """
         retained = [
-            (each, topic) for topic in self.named(name) for each in topic.retained.copy() if each.number >= number
+            (each, topic)
+            for topic in self.named(name)
+            for each in topic.retained.copy()
+            if each.number >= number and each.number not in seen
         ]
         retained.sort(key=lambda one: one[0].number)
+        seen.update(each.number for each, _ in retained)
         found = [(topic, self.sample(each)) for each, topic in retained]
         return [each for each in found if self.sender(each[1]) != but]
 

@@ -19,6 +19,7 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.interfaces.std_srvs.srv import SetBool, Trigger
 from robolink.message import int32
 from robolink.testing import ExpectationError, System
+from robolink.testing.recorder import TopicQueue
 from tests.support.counting import LATCHED, Counter, Doubler, told
 
 # Messages
@@ -50,6 +51,17 @@ def test_only_what_comes_from_now_on_counts(tested: System) -> None:
 def meanwhile(system: System, seconds: float) -> None:
     """Have time pass that the test has not asked for, as it does over Zenoh between two lines of the test."""
     system._stage.run_until(lambda: False, seconds)
+
+
+def test_the_only_message_counts_though_it_comes_while_expect_begins_to_listen(
+    tested: System, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over Zenoh: too early for the new subscription, and the recorder's is called only afterwards."""
+    monkeypatch.setattr(TopicQueue, "hear", lambda *_: None)
+    tested.start(Doubler)
+    for number in (4, 5):
+        tested.publish("count", Int32(data=number))
+        assert tested.expect("double").data == 2 * number
 
 
 def test_an_answer_that_comes_before_it_is_expected_counts(tested: System) -> None:
