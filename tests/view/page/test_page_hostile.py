@@ -84,6 +84,7 @@ def test_messages_that_no_panel_expects_leave_the_page_going(browser: Browser) -
 
 def test_a_robot_that_is_nowhere_does_not_hang_the_page(browser: Browser) -> None:
     with opened(browser, "world") as page:
+        browser.click(".layers-button")
         for place in (1e20, math.inf, math.nan):
             odometry = page.node.create_publisher(Odometry, "odom", 10)
             page.wait_for_reader(odometry)
