@@ -79,7 +79,7 @@ class Scan extends Layer {
       context.lineTo(...place);
     });
     context.stroke();
-    dots(context, places, this.colour, unit);
+    dots(context, places, scene.colours.halo, this.colour, unit);
   }
 
   /** Where the beams end, in metres; null for those that end nowhere. */
@@ -402,9 +402,9 @@ export function goal(context, { view, colours }, { x, y, ...pose }, colour) {
   context.fill();
 }
 
-/** Draw dots at places in pixels, with a dark edge, each of three by three pixels. */
-export function dots(context, places, colour, unit) {
-  for (const [style, size] of [["rgba(0,0,0,0.3)", 5], [colour, 3]]) {
+/** Draw dots at places in pixels, each of three by three pixels with an edge. */
+export function dots(context, places, halo, colour, unit) {
+  for (const [style, size] of [[faint(halo, 0.5), 5], [colour, 3]]) {
     const far = Math.floor((size * unit) / 2), side = Math.round(size * unit);
     context.fillStyle = style;
     for (const place of places) if (place) context.fillRect(Math.round(place[0]) - far, Math.round(place[1]) - far, side, side);

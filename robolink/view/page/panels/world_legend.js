@@ -34,7 +34,7 @@ const FORMS = {
     context.fillStyle = faint(colour, 0.22);
     line(context, [[3, height / 2], ...ends]);
     context.fill();
-    dots(context, ends, colour, 1);
+    dots(context, ends, scene.colours.halo, colour, 1);
   },
   line(context, colour, { colours }, width, height) {
     line(context, [[4, height - 7], [width / 2, height / 2], [width - 4, height / 2]]);

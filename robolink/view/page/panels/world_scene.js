@@ -223,7 +223,7 @@ export class Scene {
     this.bodies.clear();
     this._parts(visible, "bodies", this);
     const robots = this.drawn = this.robots();
-    this.many = robots.length > MOST_SMOOTH || visible.length > 4 * MOST_SMOOTH;
+    this.many = robots.length > MOST_SMOOTH || visible.length > 2 * MOST_SMOOTH;
     if (pixels.resize() || this.view.changed || this.groundChanged || size !== this.bodies.size) this._ground(visible);
     pixels.begin();
     this._parts(visible, "pixels", this);
