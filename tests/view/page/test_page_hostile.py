@@ -92,7 +92,6 @@ def test_a_robot_that_is_nowhere_does_not_hang_the_page(browser: Browser) -> Non
             message.pose.pose.position.x = place
             odometry.publish(message)
             browser.wait("robolink.topics.get('/odom').latest")
-            browser.click(".layers-button")
             browser.choose(".follow", "odom")
             browser.click(".toolbar .fit")
             goes_on(page)
