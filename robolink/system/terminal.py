@@ -63,10 +63,10 @@ def styled(text: str, style: str, output: TextIO | None) -> str:
 
     Args:
         text: The text.
-        style: Numbers of an SGR sequence, such as "1;31" for bold red.
+        style: Numbers of an SGR sequence, such as "1;31" for bold red; '' for none.
         output: Where it is written.
     """
-    return f"\x1b[{style}m{text}\x1b[0m" if wants_colour(output) else text
+    return f"\x1b[{style}m{text}\x1b[0m" if text and style and wants_colour(output) else text
 
 
 def is_fit(text: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -32,6 +33,7 @@ def doctor(
     from robolink.cli.doctor.gathering import gather
     from robolink.cli.doctor.graph_checks import GRAPH_CHECKS
     from robolink.cli.doctor.report import sections
+    from robolink.cli.shared.marks import say_styled
     from robolink.cli.shared.output import say
 
     facts = gather()
@@ -44,7 +46,9 @@ def doctor(
     if as_json:
         say(_json(verdicts, failed, shown))
     else:
-        for line in [*([] if report else _lines(verdicts, failed)), *(line for each in shown for line in each.lines())]:
+        for style, mark, line in [] if report else _lines(verdicts, failed):
+            say_styled(mark, style, line)
+        for line in (line for each in shown for line in each.lines()):
             say(line)
     if failed and not report:
         raise typer.Exit(1)
@@ -54,22 +58,29 @@ BY_SYMPTOM = "By what one sees: docs/reference/troubleshooting.md"
 """Last line of what is told where something is not as it should be."""
 
 
-def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> list[str]:
-    lines = []
+def _lines(verdicts: list[tuple[Check, Verdict]], failed: list[str]) -> Iterator[tuple[str, str, str]]:
+    """Yield the style of each line, what of it is in that style, and the rest."""
+    from robolink.cli.shared.marks import BAD, GOOD, WARNING
+
+    styles = {"ok": GOOD, "warning": WARNING, "error": BAD, "unknown": ""}
     for check, verdict in verdicts:
-        head = f"{MARKS[verdict.level]:6}{check.name:16}"
         first, *others = verdict.findings or [verdict.summary]
-        lines += [head + first, *(" " * len(head) + each for each in others)]
-    if failed:
-        modules = sorted(set(failed))
-        lines += [
-            f"\n{len(failed)}/{len(verdicts)} check(s) failed\n",
-            f"Failed modules: {' '.join(modules)}",
-            BY_SYMPTOM,
-        ]
-        return lines
+        mark = MARKS[verdict.level]
+        yield styles[verdict.level], mark, f"{'':{6 - len(mark)}}{check.name:16}{first}"
+        yield from (("", "", f"{'':22}{each}") for each in others)
     levels = [verdict.level for _, verdict in verdicts]
-    return [*lines, f"\n{_passed(levels)}\n", *([BY_SYMPTOM] if "warning" in levels else [])]
+    yield "", "", ""
+    if failed:
+        yield BAD, f"{len(failed)}/{len(verdicts)} check(s) failed", "\n"
+        yield "", "", f"Failed modules: {' '.join(sorted(set(failed)))}"
+    else:
+        yield styles[_worst(levels)], _passed(levels), "\n"
+    if failed or "warning" in levels:
+        yield "", "", BY_SYMPTOM
+
+
+def _worst(levels: list[str]) -> str:
+    return next((each for each in ("warning", "unknown") if each in levels), "ok")
 
 
 def _passed(levels: list[str]) -> str:

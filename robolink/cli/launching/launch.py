@@ -11,6 +11,7 @@ import typer.core
 
 from robolink.cli.launching.launch_arguments import ASSIGN, LaunchFile, launch_file, launch_words, show_launch_schema
 from robolink.cli.shared.layout import aligned
+from robolink.cli.shared.marks import BAD, GOOD, say_styled
 from robolink.cli.shared.options import GRAPH_FORMATS, choice, seconds
 from robolink.cli.shared.options import enclave as enclave_option
 from robolink.cli.shared.output import say, tell
@@ -229,9 +230,10 @@ def _validate(file: LaunchFile, options: Options) -> int:
     for note in report.notes:
         tell(f"robolink: {note}")
     for mistake in report.mistakes:
-        say(str(mistake))
+        place, mark, text = str(mistake).partition(": ")
+        say_styled(place, BAD, mark + text)
     if not report.mistakes:
-        say(f"no mistake found in {file.path}")
+        say_styled("no mistake found", GOOD, f" in {file.path}")
     return 1 if report.mistakes else 0
 
 

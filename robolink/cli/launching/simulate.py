@@ -11,6 +11,7 @@ import typer
 
 from robolink.cli.launching.launch_arguments import launch_words, show_faults_schema
 from robolink.cli.shared import complete
+from robolink.cli.shared.marks import BAD, GOOD, WARNING, say_styled
 from robolink.cli.shared.options import seconds
 from robolink.cli.shared.output import say, tell
 from robolink.cli.shared.terminal import Progress
@@ -233,7 +234,7 @@ def _repeat(ctx: typer.Context, options: Options, seeds: range, as_json: bool) -
     def done(run: SeedRun) -> None:
         progress.show(progress.shown + 1)
         if run.failures and not as_json:
-            say(_outcome(run, options))
+            say_styled(f"seed {run.seed} failed", BAD, _outcome(run, options))
 
     with Progress(len(seeds), "seeds") as progress:
         runs = run_seeds(lambda seed: [*_command(options, seed), "--json"], seeds, workers=count_cores(), on_done=done)
@@ -242,16 +243,16 @@ def _repeat(ctx: typer.Context, options: Options, seeds: range, as_json: bool) -
         say(_summary(runs, options))
     else:
         rest = f"; interrupted before the other {len(seeds) - len(runs)}" if interrupted else ""
-        say(f"{len(runs) - len(failed)} of {len(runs)} seeds passed{rest}")
+        style = BAD if failed else WARNING if interrupted else GOOD
+        say_styled(f"{len(runs) - len(failed)} of {len(runs)} seeds passed", style, rest)
     return INTERRUPTED if interrupted else 1 if failed else 0
 
 
 def _outcome(run: SeedRun, options: Options) -> str:
+    """Return why a seed failed, and the command that runs it again."""
     import shlex
 
-    return (
-        f"seed {run.seed} failed: {'; '.join(run.failures)}\n  {shlex.join(['robolink', *_command(options, run.seed)])}"
-    )
+    return f": {'; '.join(run.failures)}\n  {shlex.join(['robolink', *_command(options, run.seed)])}"
 
 
 def _summary(runs: list[SeedRun], options: Options) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Iterable
 from pathlib import Path
 
 from robolink.cli.shared.layout import shown, typed
+from robolink.cli.shared.marks import say_marked
 from robolink.cli.shared.output import say
 from robolink.exceptions import RobolinkError
 from robolink.grading.languages import Language, default_language
@@ -18,13 +17,6 @@ from robolink.learn.lines import course_listed, listed, next_step, reported, tas
 from robolink.learn.report import Report
 from robolink.learn.words import words
 from robolink.system.files import expanded
-from robolink.system.terminal import fit, styled
-
-_STYLES = {"✓": "32", "✗": "31", "→": "36"}
-"""Colours of marks at the begin of a line."""
-
-_PLAIN = {"✓": "+", "✗": "x", "→": ">"}
-"""Marks for a terminal that lacks the others."""
 
 PANEL = "learn"
 """Name of the page's panel."""
@@ -38,10 +30,10 @@ def list_exercises(language: Language | None) -> None:
     """List the exercises, with the progress of the folder in which the student is."""
     folder = find_folder()
     if folder is None:
-        say_all(course_listed(read_course(), language or default_language(), folder_below()))
+        say_marked(course_listed(read_course(), language or default_language(), folder_below()))
         return
     _speak(folder, language)
-    say_all(listed(folder))
+    say_marked(listed(folder))
 
 
 def start(path: str, source: str, language: Language | None) -> None:
@@ -54,7 +46,7 @@ def start(path: str, source: str, language: Language | None) -> None:
     if folder.path != Path.cwd():
         say(words(folder.language, "go", folder=place))
     else:
-        say_all(next_step(folder))
+        say_marked(next_step(folder))
 
 
 def check(name: str, language: Language | None) -> bool:
@@ -75,7 +67,7 @@ def check_all(language: Language | None) -> bool:
         if report.passed:
             folder.finish(each)
         passed += report.passed
-        say_all(
+        say_marked(
             [f"  {'✓' if report.passed else '✗'} {each.file}  {each.title(folder.language)} ({report.seconds:.1f} s)"]
         )
     say(words(folder.language, "heading", done=passed, all=len(folder.course)))
@@ -115,7 +107,7 @@ def hint(name: str, language: Language | None) -> None:
 def show(name: str, language: Language | None) -> None:
     """Show the task of an exercise."""
     folder = folder_here(language)
-    say_all(task(folder.chosen(name), folder.language))
+    say_marked(task(folder.chosen(name), folder.language))
 
 
 def reset(name: str, language: Language | None) -> None:
@@ -141,36 +133,12 @@ def _speak(folder: StudentFolder, language: Language | None) -> None:
 
 def _check(folder: StudentFolder, exercise: Exercise) -> bool:
     report = check_apart(exercise, folder.file_of(exercise), folder.language)
-    say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
-    say_all(reported(exercise, report, folder.language))
+    say_marked(["", f"{exercise.file}: {exercise.title(folder.language)}"])
+    say_marked(reported(exercise, report, folder.language))
     if report.passed:
         folder.finish(exercise)
-        say_all(["", *next_step(folder)])
+        say_marked(["", *next_step(folder)])
     return report.passed
-
-
-def say_all(lines: Iterable[str]) -> None:
-    """Write lines, with marks that the terminal has."""
-    for each in lines:
-        say(_fit(_coloured(each)), colours=True)
-
-
-def _coloured(line: str) -> str:
-    """Return a line whose first mark is in its colour, where there is a terminal; the rest of it is made safe."""
-    text = fit(line)
-    mark = text.lstrip()[:1]
-    return text.replace(mark, styled(mark, _STYLES[mark], sys.stdout), 1) if mark in _STYLES else text
-
-
-def _fit(line: str) -> str:
-    """Return a line with marks that the terminal has."""
-    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
-    for mark, plain in _PLAIN.items():
-        try:
-            mark.encode(encoding)
-        except (UnicodeEncodeError, LookupError):
-            line = line.replace(mark, plain)
-    return line
 
 
 def show_page(port: int | None, browser: bool, language: Language | None) -> None:
@@ -189,8 +157,8 @@ def show_page(port: int | None, browser: bool, language: Language | None) -> Non
     folder = folder_here(language)
 
     def report_it(exercise: Exercise, report: Report) -> None:
-        say_all(["", f"{exercise.file}: {exercise.title(folder.language)}"])
-        say_all(reported(exercise, report, folder.language))
+        say_marked(["", f"{exercise.file}: {exercise.title(folder.language)}"])
+        say_marked(reported(exercise, report, folder.language))
 
     exercises = PageExercises(folder, reported=report_it)
     end_with_the_terminal()
@@ -224,5 +192,5 @@ def prove(folder: str, language: Language) -> bool:
             last = each.exercise.name
             say(each.exercise.folder.name)
         good = good and each.good
-        say_all([f"  {'✓' if each.good else '✗'} {each.text}"])
+        say_marked([f"  {'✓' if each.good else '✗'} {each.text}"])
     return good

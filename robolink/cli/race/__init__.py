@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from typing import Annotated
 
 import typer
 
+from robolink.cli.shared.marks import BAD, say_styled
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.constants import MOST_SEED
+from robolink.system.terminal import fit, styled
 
 app = typer.Typer(no_args_is_help=True)
 
@@ -54,7 +57,7 @@ def race(
     from robolink.grading.mistakes import Mistake
     from robolink.race.apart import programs_of, race_all, without_program
     from robolink.race.races import RACES as RULES
-    from robolink.race.result import Result, noted, rows, table, words
+    from robolink.race.result import Result, noted, ranked, rows, table, words
     from robolink.race.result import as_csv as csv_of
 
     rules, tongue = RULES[name], spoken(language)
@@ -67,7 +70,7 @@ def race(
         rules,
         programs,
         seed,
-        on_done=lambda each: _note(noted(each, tongue)) if many else None,
+        on_done=lambda each: _note(noted(each, tongue), BAD if each.mistake else "") if many else None,
     )
     if as_json:
         say_json(rows(rules, results, seed))
@@ -75,11 +78,13 @@ def race(
         say(csv_of(rules, results, seed).removesuffix("\n"))
     else:
         results += [Result(each, mistake=Mistake("no program", f"{name}.py")) for each in others]
-        for line in table(rules, results, seed, tongue):
-            say(line)
+        heading, *lines = table(rules, results, seed, tongue)
+        say(heading)
+        for line, (_, result) in zip(lines, ranked(rules, results), strict=True):
+            say_styled(line, BAD if result.mistake is not None else "")
 
 
-def _note(text: str) -> None:
+def _note(text: str, style: str = "") -> None:
     """Write a note; a race goes on if nobody can be told, as with `2>&1 | head`."""
     with contextlib.suppress(OSError):
-        tell(text)
+        tell(styled(fit(text), style, sys.stderr), colours=True)

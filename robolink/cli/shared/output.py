@@ -14,6 +14,9 @@ from robolink.system.terminal import fit, shown, styled
 LONGEST_LINE = 2000
 """Upper bound of an error's length, in characters: an argument that it names can be as long as a file."""
 
+_NAME = "robolink:"
+"""Beginning of notes and errors."""
+
 _CLEAR = "\x1b[H\x1b[2J"
 """Control sequence that clears a terminal."""
 
@@ -42,9 +45,15 @@ def clear() -> None:
 
 
 def tell(text: str, *, colours: bool = False) -> None:
-    """Write lines for people to standard error; with `colours`, sequences that set colours are not escaped."""
+    """Write lines for people to standard error; with `colours`, sequences that set colours are not escaped.
+
+    A note that begins with robolink's name has that in yellow on a terminal; an error has it in red: see `complain`.
+    """
     if sys.stderr is not None:
-        sys.stderr.write(fit(text, colours=colours) + "\n")
+        text = fit(text, colours=colours)
+        if text.startswith(_NAME):
+            text = styled(_NAME, "33", sys.stderr) + text.removeprefix(_NAME)
+        sys.stderr.write(text + "\n")
         sys.stderr.flush()
 
 
@@ -57,7 +66,7 @@ def complain(error: object, code: int = 1, place: str = "") -> int:
         text = f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 4 :]}"
     line = shown(text, len(text))
     at = f" (at {place})" if place else ""
-    head = styled("robolink:", "1;31", sys.stderr)
+    head = styled(_NAME, "1;31", sys.stderr)
     print(f"{head} {line}{at}", file=sys.stderr)  # noqa: T201 - this is what the user is told
     return code
 

@@ -166,14 +166,6 @@ def test_a_file_that_is_gone_is_told(student: Path, capsys: Captured) -> None:
     assert (student / "02_hello.py").is_file()
 
 
-def test_marks_fit_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Old:
-        encoding = "cp1252"
-
-    monkeypatch.setattr("robolink.cli.learn.work.sys.stdout", Old())
-    assert work._fit("✓ → ✗ é") == "+ > x é"
-
-
 def test_names_are_completed(student: Path) -> None:
     assert "hello" in exercise_names()
 

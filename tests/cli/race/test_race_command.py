@@ -141,7 +141,7 @@ def test_a_name_that_is_not_utf_8_is_escaped(capsys: Captured, monkeypatch: pyte
 
 @pytest.mark.usefixtures("three")
 def test_a_race_goes_on_if_nobody_listens(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
-    def closed(text: str) -> None:
+    def closed(text: str, **options: bool) -> None:
         raise BrokenPipeError
 
     monkeypatch.setattr("robolink.cli.race.tell", closed)
