@@ -39,6 +39,7 @@ KEYS = {
     "Escape": ("Escape", 27, ""),
     "Tab": ("Tab", 9, ""),
     "End": ("End", 35, ""),
+    "Delete": ("Delete", 46, ""),
     " ": ("Space", 32, " "),
     "ArrowUp": ("ArrowUp", 38, ""),
     "ArrowDown": ("ArrowDown", 40, ""),

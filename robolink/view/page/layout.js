@@ -236,6 +236,7 @@ export class Layout {
     element.querySelectorAll("[role=tab]").forEach((each, i) => {
       each.ariaSelected = String(i === current);
       each.tabIndex = i === current ? 0 : -1;
+      if (i === current) each.scrollIntoView({ block: "nearest", inline: "nearest" });
     });
     cell.tabs.forEach((tab, i) => {
       if (i === current && !this.shown.has(tab)) this.shown.set(tab, this._open(tab));

@@ -26,7 +26,7 @@ export function facts(app) {
   const robots = new Set(frames.filter((name) => BASE.test(name)).map((name) => name.replace(BASE, ""))).size
     || [...app.drivable().keys()].filter((name) => name.endsWith("/cmd_vel") && spaces.includes(name.slice(0, -7))).length;
   return {
-    isLearn: app.isLearn, isBag: app.isBag, isEmpty: !topics.length && !app.connection.graph.nodes.length, robots, command,
+    isLearn: app.isLearn, isBag: app.isBag, isEmpty: !topics.length && app.connection.graph.nodes.every((name) => /\/_[^/]*$/.test(name)), robots, command,
     twist: type?.endsWith("Stamped") ? "twist." : "", images: has(IMAGE), turtle: has(/^turtlesim\//), spatial: frames.length > 0 || has(SPATIAL),
   };
 }
@@ -62,7 +62,7 @@ function screen(kind, found) {
     case "learn": return [[100, [100, "learn"]]];
     case "drive": return [[65, [100, world]], [35, [56, messages, "log", "teleop"], [44, plot]]];
     case "robots": return [[72, [100, world]], [28, [100, "topics", "log", "teleop", ...picture]]];
-    case "camera": return spatial || command ? [[55, [64, world], [36, plot]], [45, [64, "images"], [36, messages, "log", "teleop"]]] : [[60, [100, "images"]], [40, [100, "topics", "log"]]];
+    case "camera": return spatial || command ? [[55, [58, world], [42, plot]], [45, [58, "images"], [42, messages, "log", "teleop"]]] : [[60, [100, "images"]], [40, [100, "topics", "log"]]];
     case "bag": return spatial ? [[62, [100, "world"]], [38, [56, ...picture, messages, "log"], [44, plot]]] : [[50, [100, ...picture, messages]], [50, [56, plot], [44, "log"]]];
     default: return [[50, [100, "topics"]], [50, [60, ...(spatial ? ["world"] : []), "graph"], [40, "log"]]];
   }

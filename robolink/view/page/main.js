@@ -34,6 +34,7 @@ import { Topics } from "./topics.js";
 import { addWords, choose, words } from "./words.js";
 
 const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
+const SEVERAL = ["world", "topics", "plot", "images"]; // panels of which a second one has a use
 const SETTINGS = "robolink.settings";
 
 /** What is remembered by the browser beside the layout. */
@@ -151,7 +152,8 @@ function buildHeader() {
   document.title = name === "robolink" ? name : `${name} – robolink`;
   const menu = h("select", { id: "add", "aria-label": words("add"), title: `${words("add")} (a)`, onchange: () => {
     if (menu.value === "reset") app.layout.reset();
-    else app.layout.add(menu.value);
+    else if (SEVERAL.includes(menu.value)) app.layout.add(menu.value);
+    else app.layout.open(menu.value);
     menu.value = "";
   } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
   const tools = h("span", { id: "tools" });

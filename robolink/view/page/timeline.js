@@ -32,8 +32,8 @@ export class Timeline {
     this.speeds = h("select", { "aria-label": words("speed"), title: words("speed"), id: "rate",
       onchange: () => this._control({ speed: Number(this.speeds.value) }) },
       ...SPEEDS.map((each) => h("option", { value: each, selected: each === (this.bag?.speed ?? 1) }, `${each}×`)));
-    const about = this.bag && h("span", { id: "about" }, begun(this.bag));
-    this.footer.replaceChildren(this.toggleButton, about ?? "", this.slider, this.label, this.bag ? this.speeds : this.live);
+    const about = this.bag?.start > 1e11 ? h("span", { id: "about" }, begun(this.bag)) : ""; // a simulation's time has no date
+    this.footer.replaceChildren(this.toggleButton, about, this.slider, this.label, this.bag ? this.speeds : this.live);
     document.querySelector(this.bag ? "header" : "main").after(this.footer); // a bag's is what one comes for: at the top
     this._show();
   }
@@ -109,11 +109,8 @@ export class Timeline {
   }
 }
 
-/** Date and time at which a bag begins, and how long it is. */
-function begun({ start, end }) {
-  const when = start < 1e11 ? [] : [new Date(start).toLocaleString(document.documentElement.lang, { dateStyle: "medium", timeStyle: "short" })]; // a simulation's time begins at 0
-  return [...when, `${((end - start) / 1000).toFixed(1)} s`].join(" · ");
-}
+/** Date and time at which a bag begins. */
+function begun({ start }) { return new Date(start).toLocaleString(document.documentElement.lang, { dateStyle: "medium", timeStyle: "short" }); }
 
 function seconds(ms) {
   const all = Math.max(0, ms) / 1000, minutes = Math.floor(all / 60);
