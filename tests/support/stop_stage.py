@@ -34,6 +34,15 @@ class Speed(NamedTuple):
     value: float
 
 
+class Stood(NamedTuple):
+    """Times in seconds after which the robot stood for good."""
+
+    pressed: float
+    """Since STOP was pressed: with the browser, the page, the server and the network."""
+    said: float
+    """Since STOP was said on its topic."""
+
+
 class Stage:
     """A launched system, and a view of it whose process can be killed.
 
@@ -51,8 +60,9 @@ class Stage:
         self.node = Node("other", context=self.context)
         self.speeds: list[Speed] = []
         self.node.create_subscription(Odometry, "/odom", self._on_odometry, 100)
-        self.said: list[bool] = []
-        self.node.create_subscription(Bool, TOPIC, lambda each: self.said.append(each.data), QOS)
+        self.said_at: list[float] = []
+        """When a true was heard on the topic of STOP."""
+        self.node.create_subscription(Bool, TOPIC, self._on_stop, QOS)
         self._commands = self.node.create_publisher(Twist, "/cmd_vel", 10)
         self._ended = threading.Event()
         self._executor = SingleThreadedExecutor(context=self.context)
@@ -83,14 +93,19 @@ class Stage:
         twist = odometry.twist.twist
         self.speeds.append(Speed(time.monotonic(), max(map(abs, (twist.linear.x, twist.linear.y, twist.angular.z)))))
 
+    def _on_stop(self, message: Bool) -> None:
+        if message.data:
+            self.said_at.append(time.monotonic())
+
     def drives(self) -> None:
         """Wait until the robot moves."""
         self.speeds.clear()
         until(lambda: bool(self.speeds) and self.speeds[-1].value > 0.1, 60.0)
 
-    def stands_after(self, press: Callable[[], object], hold: float) -> float:
-        """Press STOP, and return the time in seconds after which the robot stood; it stands for `hold` seconds then."""
+    def stands_after(self, press: Callable[[], object], hold: float) -> Stood:
+        """Press STOP, and return how soon the robot stood; it is watched for `hold` seconds from then on."""
         self.speeds.clear()
+        self.said_at.clear()
         begin = time.monotonic()
         press()
         until(lambda: bool(self.speeds) and self.speeds[-1].value < STANDS)
@@ -99,7 +114,8 @@ class Stage:
         seen = list(self.speeds)
         moving = [each.at for each in seen if each.value >= STANDS and each.at > begin]
         assert seen[-1].at > end - 0.5, "nothing more was heard of the robot"
-        return max(moving, default=begin) - begin
+        last = max(moving, default=begin)
+        return Stood(last - begin, max(0.0, last - self.said_at[0]))
 
     def close(self) -> None:
         self._ended.set()

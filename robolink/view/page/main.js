@@ -198,13 +198,16 @@ function drive() {
 /** Do what the world does for a key, wherever the keyboard is. */
 function inWorld(event) { app.layout.open("world").loaded.then(() => app.layout.panel("world")?.keys(event)); }
 
+let clicked = null; // what the mouse gave the keyboard to
+addEventListener("pointerdown", ({ target }) => { clicked = target.closest("button, summary"); });
+
 function shortcut(event) {
   if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
   const acts = { "?": help, a: () => document.getElementById("add").focus(), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
   if (!app.isBag && !app.isLearn) acts.g = acts.i = inWorld;
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
   // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
-  if (!act || (event.key === " " && event.target.matches("button:focus-visible, summary"))) return;
+  if (!act || (event.key === " " && event.target !== clicked && event.target.matches("button, summary"))) return;
   event.preventDefault();
   if (!event.repeat || event.key === " ") act(event);
 }

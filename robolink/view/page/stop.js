@@ -11,14 +11,16 @@ addPairs("stop", {
   release: ["RELEASE", "LIBERAR"], release_title: ["Let the robots move again", "Deixar os robôs andarem de novo"],
   holds: ["STOP holds", "PARADA ativa"], until: ["It stays until somebody releases it, also when this page is closed.", "Fica até que alguém a libere, mesmo com esta página fechada."],
   obeyed: ["{nodes}: obeys, whoever sends commands.", "{nodes}: obedece, mande quem mandar."],
-  unheard: ["{topic}: {nodes} does not listen to /e_stop. It gets zeros 20 times a second; another publisher may move it in between.",
-    "{topic}: {nodes} não escuta /e_stop. Recebe zeros 20 vezes por segundo; outro publisher pode movê-lo entre eles."],
+  unheard: ["{nodes} does not listen to /e_stop. {topics} gets zeros 20 times a second; another publisher may move it in between.",
+    "{nodes} não escuta /e_stop. {topics} recebe zeros 20 vezes por segundo; outro publisher pode movê-lo entre eles."],
+  more: ["{names} and {count} more", "{names} e mais {count}"],
   nobody: ["No robot is known: one that starts now is held.", "Nenhum robô conhecido: um que comece agora fica parado."],
   sending: ["STOP is not confirmed yet: sending it again…", "PARADA ainda não confirmada: enviando de novo…"],
   refused: ["STOP holds", "PARADA ativa"],
 });
 
 const AGAIN = 250; // ms after which a press that was not told is sent again
+const SHOWN = 4; // names in a line
 const GUARD = 700; // ms in which a release does nothing: the second half of a double click
 
 /** The lock: `held` as the server told it. The app's event "stop" tells of a press, and of every change. */
@@ -88,8 +90,11 @@ export class Stop {
     stop.ariaPressed = String(this.held);
     stop.title = words(connection.isReadOnly ? "read-only.why" : "stop.title");
     banner.hidden = stop.hidden || !(this.held || this.pending);
-    const lines = Object.entries(state.unheard).map(([topic, nodes]) => h("li", { class: "unheard" }, words("stop.unheard", { topic, nodes: nodes.join(", ") })));
-    if (state.obeyed.length) lines.unshift(h("li", {}, words("stop.obeyed", { nodes: state.obeyed.join(", ") })));
+    const some = (names) => (names.length > SHOWN + 1 ? words("stop.more", { names: names.slice(0, SHOWN).join(", "), count: names.length - SHOWN }) : names.join(", "));
+    const deaf = new Map(); // topics by the nodes that do not listen there: one robot may have many
+    for (const [topic, nodes] of Object.entries(state.unheard)) deaf.set(some(nodes), [...(deaf.get(some(nodes)) ?? []), topic]);
+    const lines = [...deaf].map(([nodes, topics]) => h("li", { class: "unheard" }, words("stop.unheard", { nodes, topics: some(topics) })));
+    if (state.obeyed.length) lines.unshift(h("li", {}, words("stop.obeyed", { nodes: some(state.obeyed) })));
     if (!lines.length) lines.push(h("li", {}, words("stop.nobody")));
     const text = this.held ? [h("strong", {}, words("stop.holds")), " ", words("stop.until"), h("ul", {}, ...lines)] : [words("stop.sending")];
     const release = button(words("stop.release"), words("stop.release_title"), () => this.release(), { className: "release", disabled: !this.held || !connection.isOpen || this.isMute });

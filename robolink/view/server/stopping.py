@@ -117,6 +117,7 @@ class Stopping:
             self._lock.press()
         else:
             self._lock.release()
+        self._told = ""  # also what has not changed: who pressed waits for it
         self._publish_state()
 
     def state(self) -> str:

@@ -15,12 +15,15 @@ import pytest
 
 from tests.support.browser import Browser, needs_chromium
 from tests.support.domains import free_domain
-from tests.support.stop_stage import Stage
+from tests.support.stop_stage import Stage, Stood
 
 pytestmark = [pytest.mark.processes, needs_chromium]
 
 SYSTEMS = ("wander", "follow", "teleop", "track")
-STANDS_WITHIN = 0.3
+WITHIN = 0.3
+"""Seconds within which the robot stands."""
+BUSY = 1.0
+"""More seconds that a machine which runs other tests may take from the press to what is said on the topic."""
 LONG, SHORT = 10.0, float(os.environ.get("ROBOLINK_STOP_SECONDS", "1"))
 """Seconds for which it stands: once in each system, and in all other ways."""
 
@@ -69,8 +72,8 @@ WAYS: dict[str, Callable[[Browser], object]] = {
 """Ways to press STOP."""
 
 
-def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float) -> dict[str, float]:
-    """Press and release STOP in every way; return after how many seconds the robot stood."""
+def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float) -> dict[str, Stood]:
+    """Press and release STOP in every way; return how soon the robot stood."""
     address = stage.address()
     found = {}
     for way, press in WAYS.items():
@@ -92,7 +95,8 @@ def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float)
 def test_the_robot_stands_in_every_way_whoever_sends_commands(browser: Browser, name: str) -> None:
     with staged(name) as stage:
         found = stop_in_every_way(browser, stage, LONG, SHORT)
-    assert {way: seconds for way, seconds in found.items() if seconds > STANDS_WITHIN} == {}
+    late = {way: each for way, each in found.items() if each.said > WITHIN or each.pressed > WITHIN + BUSY}
+    assert not late
 
 
 def test_a_server_that_is_killed_leaves_the_robot_standing_and_the_next_one_knows(browser: Browser) -> None:
@@ -121,7 +125,8 @@ def main() -> None:
         for name in SYSTEMS:
             with staged(name) as stage:
                 found = stop_in_every_way(browser, stage, LONG, LONG)
-            sys.stdout.write(f"{name}: {', '.join(f'{way} {seconds:.3f} s' for way, seconds in found.items())}\n")
+            for way, stood in found.items():
+                sys.stdout.write(f"{name} {way}: {stood.pressed:.3f} s, and {stood.said:.3f} s since it was said\n")
             sys.stdout.flush()
 
 
