@@ -152,6 +152,7 @@ def test_latched_messages_reach_who_comes_late_once(ends: tuple[Transport, Trans
     assert first.hears(latched(1)).next() == b"map1"
     second = Node(taking, "second")
     assert second.hears(latched(1)).next() == b"map1"
+    until(lambda: sees(giving, "first", 1) and sees(giving, "second", 1))  # else they are not seen to go
     for each in (first, second):
         each.ends()
     until(lambda: sees(giving, "first", 0) and sees(giving, "second", 0))
