@@ -53,9 +53,9 @@ def test_of_many_sections_in_vain_the_first_are_named() -> None:
 
 def test_a_thousand_nodes_are_looked_up_at_once() -> None:
     names = " ".join(f"/n{number}" for number in range(1000))
-    begin = time.perf_counter()
+    begin = time.process_time()
     assert told(f"/** {names}", names) == []
-    assert time.perf_counter() - begin < 0.5
+    assert time.process_time() - begin < 0.5
 
 
 def test_a_node_that_spins_tells_of_it_once(context: Context, capsys: Captured, tmp_path: Path) -> None:

@@ -21,6 +21,8 @@ pytestmark = [pytest.mark.processes, pytest.mark.slow]
 STRING, ADD = "std_msgs/msg/String", "example_interfaces/srv/AddTwoInts"
 WITHIN = 3.0
 """Longest time in s until messages go both ways after the last part is there; some 0.3 s on a quiet machine."""
+ENDS_WITHIN = 5.0
+"""Seconds in which a bridge ends, and others know: what is not told lasts until its lease is over, 10 s and more."""
 
 
 class Pair:
@@ -138,11 +140,11 @@ def test_it_ends_quickly_and_takes_all_along(pair: Pair, number: signal.Signals)
     begin = time.monotonic()
     bridge.process.send_signal(number)
     assert bridge.end() == 0
-    assert time.monotonic() - begin < 1.5
+    assert time.monotonic() - begin < ENDS_WITHIN
     assert bridge.lines[-1].text == "the bridge has ended"
     assert bridge.errors == []
-    until(lambda: "/lab/zenoh" not in pair.peer("dds").ask("nodes"), "DDS has been told", 1.0)
-    until(lambda: "/lab/dds" not in pair.peer("zenoh").ask("nodes"), "Zenoh knows", 1.0)
+    until(lambda: "/lab/zenoh" not in pair.peer("dds").ask("nodes"), "DDS has been told", ENDS_WITHIN)
+    until(lambda: "/lab/dds" not in pair.peer("zenoh").ask("nodes"), "Zenoh knows", ENDS_WITHIN)
 
 
 def test_a_peer_of_ros_2_on_zenoh_that_others_wrote_meets_dds(lab: Lab) -> None:

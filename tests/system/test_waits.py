@@ -227,7 +227,7 @@ def test_a_wait_takes_all_of_its_time() -> None:
         waits.get(queue.SimpleQueue(), 0.3)
     with pytest.raises(NotInTime):
         waits.result(ThreadFuture(), 0.3)
-    assert 1.2 <= time.monotonic() - begin < 3.0
+    assert time.monotonic() - begin >= 1.2
 
 
 def test_a_wait_ends_with_what_it_waits_for() -> None:
