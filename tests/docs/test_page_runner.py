@@ -34,6 +34,10 @@ from tools.docs_site.same_code import with_code_of
         (["600 s in 3.4 s, 180 times as fast"], ["600 s in 12.0 s, 50 times as fast"], True, True),
         (["600 s in 3.4 s, 180 times as fast"], ["60 s in 3.4 s, 180 times as fast"], True, False),
         (["[INFO] [1.5] [a]: b"], ["[INFO] [17.25] [a]: c"], True, False),
+        (["  1.2 s  INFO  x/a    b ..."], ["[x/a] [INFO] [17.25] [x.a]: b c"], True, True),
+        (["  1.2 s  ERROR a      b"], ["[a] [INFO] [17.25] [a]: b"], True, False),
+        ([" 11.2 s        view   b"], ["[view] b"], True, True),
+        ([" 11.2 s  ERROR launch  b"], ["[launch] b"], True, True),
     ],
 )
 def test_outputs_fit_by_their_wildcards(shown: list[str], lines: list[str], exact: bool, fit: bool) -> None:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 STAMP = re.compile(r"\\\[\d+\\\.\d+\\\]")
 """A log line's time stamp, in a pattern whose characters are escaped."""
+COLUMNS = re.compile(r" *\d+\.\d s  (?P<severity>[A-Z ]{5}) (?P<name>\S+) +(?P<text>.*)")
+"""Line of a launch as a terminal has it; a pipe has its parts in brackets."""
 PACE = re.compile(r"in\\ [\d\\.]+\\ s,\\ \d+\\ times")
 """How fast a simulation was."""
 DECIMAL = re.compile(r"(?<![\w.])\d+\\\.\d+")
@@ -15,10 +17,17 @@ DECIMAL = re.compile(r"(?<![\w.])\d+\\\.\d+")
 def pattern_of(line: str, exact: bool) -> str:
     """Return the regular expression of a shown line: `...` stands for anything, and a time stamp for any other.
 
+    A page shows what a launch writes to a terminal, and the output that is compared comes through a pipe.
+
     Args:
         line: What the page shows.
         exact: False if any number with a point may stand where the page has one: a robot in real time is elsewhere.
     """
+    if (columns := COLUMNS.fullmatch(line)) is not None:
+        severity, name, text = columns.groups()
+        is_logged = severity.strip() and name != "launch"
+        log = f"[{severity.strip()}] [1.5] [{name.replace('/', '.')}]: " if is_logged else ""
+        line = f"[{name}] {log}{text}"
     escaped = re.escape(line.rstrip()).replace(r"\.\.\.", ".*")
     escaped = PACE.sub(r"in \\d+\\.\\d+ s, \\d+ times", escaped)
     escaped = STAMP.sub(r"\\[\\d+\\.\\d+\\]", escaped)
