@@ -76,10 +76,11 @@ class RobotCommands:
                 self.robot.turn_wheels(dict.fromkeys(self.motors, 0.0))
 
     def senders(self) -> set[str]:
-        """Return the full names of the nodes that publish commands."""
+        """Return the full names of the nodes that publish commands, but for hidden ones, which are tools."""
         topics = [each.topic_name for each in (self._cmd_vel, self._joint_command) if each is not None]
         ends = (end for topic in topics for end in self._node.get_publishers_info_by_topic(topic))
-        return {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in ends}
+        shown = (each for each in ends if not each.node_name.startswith("_"))
+        return {f"{each.node_namespace.rstrip('/')}/{each.node_name}" for each in shown}
 
     def close(self) -> None:
         """Destroy the subscriptions."""

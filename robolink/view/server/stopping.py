@@ -31,9 +31,16 @@ PERIOD = 0.05
 """Period of zeros, in seconds."""
 
 FIRST = 1.0
-"""Time in seconds in which all robots get zeros, whether they listen to the lock or not; and in which a release is said
-to who comes just then.
+"""Time in seconds in which robots get zeros whether they listen to the lock or not, if they are FEW; and in which a
+release is said to who comes just then.
 """
+
+
+FEW = 10
+"""Most topics of commands with which those who listen get zeros as well: a fleet would be kept busy by them."""
+
+AT_ONCE = 0.01
+"""Time in seconds after which further topics get their first zeros with the next ones: 100 publishers take 0.1 s."""
 
 
 class Drives(NamedTuple):
@@ -160,12 +167,11 @@ class Stopping:
     def _on_change(self, held: bool) -> None:
         self._now = self._changed_at = clocks.monotonic()
         self._zeros_due, self._again_due = 0.0, self._now + AGAIN
+        self._publish_state()
         if held:
-            self._look()
             self._send_zeros()
         else:
             self._end_zeros(())
-        self._publish_state()
 
     def _look(self) -> None:
         """Look at the graph, which has changed: a new listener is told that it holds, if it does."""
@@ -187,10 +193,15 @@ class Stopping:
         if not self._keeps:
             return
         drives = self._drives
-        topics = drives.all_of_them if self._now < self._changed_at + FIRST else drives.deaf
+        topics = drives.deaf
+        if self._now < self._changed_at + FIRST and len(drives.all_of_them) <= FEW:
+            topics = {**drives.deaf, **drives.all_of_them}  # those that need it first
         self._end_zeros(topics)
+        end = clocks.monotonic() + AT_ONCE
         for topic, type_name in topics.items():
             if topic not in self._zeros:
+                if clocks.monotonic() > end:
+                    break
                 cls = find(type_name)
                 self._zeros[topic] = self._system.node.create_publisher(cls, topic, 10), cls
             publisher, cls = self._zeros[topic]
