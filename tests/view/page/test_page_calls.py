@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import threading
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from robolink.action import ActionServer, CancelResponse, GoalResponse
+from robolink.bag.reader import open_bag
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.executors import MultiThreadedExecutor
 from robolink.interfaces.example_interfaces.action import Fibonacci
@@ -22,6 +24,10 @@ from robolink.interfaces.rcl_interfaces.srv import SetParameters
 from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.node import Node
 from robolink.parameter import Parameter
+from robolink.view.server import Settings, View
+from robolink.view.sources.bag import BagSource
+from tests.support.bags import ten_messages
+from tests.support.bags import write as write_bag
 from tests.support.browser import Browser, needs_chromium
 from tests.support.pages import Page, opened
 from tests.support.view_clients import WITHIN, until
@@ -258,3 +264,44 @@ class TestActions:
                 executor.shutdown()
                 thread.join(WITHIN)
                 server.destroy()
+
+
+@pytest.mark.parametrize(
+    ("panel", "option", "none"),
+    [
+        ("services", {"service": "/gone"}, "No node serves anything of its own"),
+        ("actions", {"action": "/gone"}, "No node serves an action"),
+        ("parameters", {"node": "/gone"}, "/robot"),
+    ],
+)
+def test_what_nobody_serves_is_told(browser: Browser, panel: str, option: dict[str, str], none: str) -> None:
+    with opened(browser, panel) as page:
+        text(page, f".panel-{panel}", none)
+    tab = {"id": panel, "options": option}
+    with opened(browser, layout={"columns": [{"width": 50, "cells": [{"tabs": [tab]}]}]}) as page:
+        text(page, f".panel-{panel} .state", "Nobody serves /gone now")
+        page.picture(f"{panel}_gone")
+
+
+def test_a_bag_has_nothing_to_call(browser: Browser, tmp_path: Path) -> None:
+    write_bag(tmp_path / "bag", ten_messages())
+    with (
+        open_bag(tmp_path / "bag") as bag,
+        View(BagSource(bag), Settings(port=0)) as view,
+        opened(browser, "services", "actions", "parameters", "images", view=view) as page,
+    ):
+        for panel in ("services", "actions", "parameters"):
+            text(page, f".panel-{panel} .state", "A bag has messages alone")
+        text(page, ".panel-images .empty", "No topic of this bag has images.")
+
+
+def test_an_action_that_comes_back_is_offered_again(browser: Browser) -> None:
+    with opened(browser, "actions") as page, page.system.spinning() as node:
+        server = TestActions.serve(node)
+        browser.wait("document.querySelector('button.send') && !document.querySelector('button.send').disabled")
+        server.destroy()
+        text(page, ".panel-actions .state", "Nobody serves /count now")
+        assert browser.js("document.querySelector('button.send').disabled")
+        TestActions.serve(node)
+        browser.wait("!document.querySelector('button.send').disabled")
+        browser.wait("document.querySelector('.panel-actions .state').textContent == ''")

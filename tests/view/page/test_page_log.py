@@ -65,9 +65,38 @@ def test_a_flood_keeps_the_newest_lines(browser: Browser) -> None:
         wait_for_lines(page, "begin")
         flood = (
             "(() => { const log = robolink.layout.panel('log'); for (let i = 0; i < 20000; i++)"
-            " log.fresh.push({level: 20, node: 'a', text: `${i}`, place: '', stamp: 0});"
+            " log.fresh.push({level: 20, node: 'a', text: `${i}`, place: '', stamp: Date.now()});"
             " log.frame(); return log.entries.length; })()"
         )
         assert browser.js(flood) == 5000
         assert browser.js("document.querySelectorAll('.log li').length") == 1000
         assert lines(page)[-1] == "19999"
+
+
+def test_what_was_logged_before_the_page_opened_stands_in_the_order_of_time(browser: Browser) -> None:
+    with opened(browser, "log") as page:
+        browser.wait("!!robolink.layout.panel('log')")
+        take = (
+            "(() => { const log = robolink.layout.panel('log'), take = (text, sec) =>"
+            " log._take({level: 20, name: 'a', msg: text, stamp: {sec, nanosec: 0}, file: ''}, 0);"
+            " for (const [text, sec] of %s) take(text, sec); log.frame(); })()"
+        )
+        browser.js(take % "[['one', 10], ['four', 40], ['two', 20]]")
+        wait_for_lines(page, "one", "two", "four")
+        browser.js(take % "[['three', 30]]")  # of another node, whose messages come later
+        wait_for_lines(page, "one", "two", "three", "four")
+
+
+def test_a_narrow_log_breaks_no_words(browser: Browser) -> None:
+    with opened(browser, "log") as page:
+        try:
+            browser.resize(300, 600)
+            page.node.get_logger().get_child("a_node_with_a_long_name").info("driving ahead, nearest wall 0.82 m")
+            browser.wait("document.querySelector('.log li')")
+            assert browser.js(
+                "document.querySelector('.log').scrollWidth <= document.querySelector('.log').clientWidth"
+            )
+            assert browser.js("document.querySelector('.log li').clientHeight") < 90
+            page.picture("log_narrow")
+        finally:
+            browser.resize(1280, 720)

@@ -75,9 +75,12 @@ def test_fields_are_picked_from_the_tree_and_drawn(browser: Browser) -> None:
             "(() => { const c = document.querySelector('canvas.plot');"
             " const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; const found = new Set();"
             " for (let i = 0; i < d.length; i += 4) if (d[i + 3] == 255) found.add(`${d[i]},${d[i + 1]},${d[i + 2]}`);"
-            " return ['79,176,255', '255,183,77'].every((each) => found.has(each)); })()"
+            " const bytes = (name) => robolink.colour(name).match(/[\\da-f]{2}/g).map((each) => parseInt(each, 16));"
+            " return ['c1', 'c2'].every((name) => found.has(bytes(name).join())); })()"
         )
         browser.wait(drawn)
+        units = "[...document.querySelectorAll('.chip output')].map((each) => each.textContent.split(' ')[1]).join()"
+        browser.wait(f"{units} == 'm/s,rad/s'")
         page.picture("plot")
 
 

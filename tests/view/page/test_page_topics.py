@@ -160,10 +160,12 @@ def test_a_topic_is_opened_with_its_branches_unfolded(browser: Browser) -> None:
         assert browser.js("document.querySelector('.detail p').textContent") == "geometry_msgs/msg/Twist"
         browser.click("[data-path=angular]")
         browser.wait("!document.querySelector('[data-path=\"angular.x\"]')")
-        kept = json.loads(browser.js("localStorage['robolink.layouts']"))[browser.js("robolink.layout.kind")]
-        assert kept["columns"][0]["cells"][0]["tabs"][0]["options"]["open"] == [
-            "linear"
-        ]  # and the browser remembers it
+        options = (
+            "JSON.parse(localStorage['robolink.layouts'])[robolink.layout.kind].columns[0].cells[0].tabs[0].options"
+        )
+        browser.wait(f"{options}.open == 'linear'")  # the browser remembers it
+        browser.js("robolink.layout.rebuild()")
+        assert tree(page, "linear.x") == ["linear", "x 0.5", "y 0", "z 0", "angular"]
 
 
 def test_a_bag_has_ages_in_its_time_and_no_publishers(browser: Browser, tmp_path: Path) -> None:

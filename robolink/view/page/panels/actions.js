@@ -3,11 +3,11 @@
 import { partSchema } from "../connection.js";
 import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
-import { Form, Picker } from "./form.js";
+import { absence, Form, Picker } from "./form.js";
 import { leaf, Tree } from "./tree.js";
 
 addPairs("actions", {
-  choose: ["action", "action"], none: ["no actions", "nenhuma action"], send: ["Send goal", "Enviar objetivo"], cancel: ["Cancel", "Cancelar"],
+  choose: ["action", "action"], none: ["no actions", "nenhuma action"], none_why: ["No node serves an action. One to try: robolink run examples_rclpy_minimal_action_server server", "Nenhum node serve uma action. Uma para experimentar: robolink run examples_rclpy_minimal_action_server server"], send: ["Send goal", "Enviar objetivo"], cancel: ["Cancel", "Cancelar"],
   cancelling: ["canceling", "cancelando"], rejected: ["rejected", "rejeitado"], sent: ["sent…", "enviado…"], feedback: ["feedback", "feedback"], result: ["result", "resultado"],
   refused: ["the cancel request was refused", "o cancelamento foi recusado"],
   0: ["unknown", "desconhecido"], 1: ["accepted", "aceito"], 2: ["executing", "executando"], 3: ["canceling", "cancelando"], 4: ["succeeded", "concluído"], 5: ["canceled", "cancelado"], 6: ["aborted", "abortado"],
@@ -52,11 +52,15 @@ class Actions {
     this.sendButton.disabled = Boolean(why) || !found;
     this.sendButton.title = why;
     if (why) this._tell(why, "warn");
+    else if (!found) this._tell(absence(this.app, this.action, words("actions.none_why")), this.action ? "warn" : "dim");
+    else if (this.isAway) this._tell("");
+    this.isAway = !found;
   }
 
   _tell(text, kind = "") {
     this.state.textContent = text;
     this.state.className = `state ${kind}`;
+    if (text) this.state.scrollIntoView({ block: "nearest" });
   }
 
   _follow(found) {

@@ -7,7 +7,8 @@ addPairs("form", {
   add: ["add one", "adicionar"], remove: ["remove", "remover"], other: ["other…", "outro…"], list: ["numbers, with commas", "números, com vírgulas"],
   range: ["{name}: {low} to {high}, got '{value}'", "{name}: de {low} a {high}, e não '{value}'"], number: ["{name}: a number is needed, got '{value}'", "{name}: precisa ser um número, e não '{value}'"],
   size: ["{name}: {size} elements are needed, got {count}", "{name}: são {size} elementos, e não {count}"], most: ["{name}: at most {size} elements, got {count}", "{name}: no máximo {size} elementos, e não {count}"],
-  empty: ["no fields", "sem campos"],
+  empty: ["no fields", "sem campos"], unserved: ["Nobody serves {name} now: its node does not run.", "Ninguém serve {name} agora: o seu node não está em execução."],
+  bag: ["A bag has messages alone: services, actions and parameters are those of nodes that run.", "Um bag só tem mensagens: services, actions e parâmetros são de nodes em execução."],
 });
 
 const BITS = { bool: 1, byte: 8, char: 8, uint8: 8, int8: -8, uint16: 16, int16: -16, uint32: 32, int32: -32, uint64: 64, int64: -64 };
@@ -137,6 +138,12 @@ export class Form {
     };
     return { element: h("div", {}, body, more), read, nested: true };
   }
+}
+
+/** Why nothing is shown of a chosen name, or of none: nobody serves it, or there is nothing of its kind, as `none` says. */
+export function absence({ connection, isBag, words }, name, none) {
+  if (!connection.isOpen) return "";
+  return isBag ? words("form.bag") : name ? words("form.unserved", { name }) : none;
 }
 
 /** Menu of names that come and go: the chosen one stays chosen, also while it is away. */

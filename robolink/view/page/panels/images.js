@@ -6,7 +6,7 @@ import { Picker } from "./form.js";
 import { paint } from "./pixels.js";
 
 addPairs("images", {
-  topic: ["topic", "topic"], none: ["no images", "nenhuma imagem"], waiting: ["no image yet", "nenhuma imagem ainda"],
+  topic: ["topic", "topic"], none: ["no images", "nenhuma imagem"], none_why: ["No topic has images. To see some: robolink launch blobs", "Nenhum topic tem imagens. Para ver algumas: robolink launch blobs"], none_bag: ["No topic of this bag has images.", "Nenhum topic deste bag tem imagens."], waiting: ["no image yet", "nenhuma imagem ainda"],
   save: ["save as PNG", "salvar como PNG"], state: ["{width}x{height}  {encoding}  {fps} fps", "{width}x{height}  {encoding}  {fps} fps"],
 });
 
@@ -36,7 +36,8 @@ export class Images {
     this.state = h("p", { class: "dim state" });
     this.canvas = h("canvas", { class: "image", "aria-label": words("panel.images"), width: 1, height: 1, hidden: true });
     this.context = this.canvas.getContext("2d");
-    this.element.append(h("div", { class: "row" }, this.picker.element, this.state, h("span", { class: "gap" }), button("PNG", words("images.save"), () => this.canvas.toBlob((blob) => download("image.png", blob)))), h("div", { class: "paper" }, this.canvas));
+    this.hint = h("p", { class: "empty" });
+    this.element.append(h("div", { class: "row" }, this.picker.element, this.state, h("span", { class: "gap" }), button("PNG", words("images.save"), () => this.canvas.toBlob((blob) => download("image.png", blob)))), h("div", { class: "paper" }, this.canvas, this.hint));
   }
 
   /** Names of the topics to choose from. */
@@ -44,12 +45,14 @@ export class Images {
 
   _list() {
     this.topic = this.picker.show(this._names(), this.topic);
+    this.hint.textContent = this.app.words(this.topic ? "images.waiting" : this.app.isBag ? "images.none_bag" : "images.none_why");
     if (!this.topic || this.handle?.topic.name === this.topic) return;
     this.handle?.close();
     this.stamps = [];
     this.seen = null;
     this.canvas.hidden = true;
-    this.state.textContent = this.app.words("images.waiting");
+    this.hint.hidden = false;
+    this.state.textContent = "";
     this.handle = this.app.listen(this.topic, { rate: 60, every: () => this.stamps.push(performance.now()) });
   }
 
@@ -84,6 +87,7 @@ export class Images {
   _size(width, height) {
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
     this.canvas.hidden = false;
+    this.hint.hidden = true;
   }
 
   _raw(image) {

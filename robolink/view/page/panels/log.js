@@ -5,7 +5,7 @@ import { addPairs } from "../words.js";
 
 addPairs("log", {
   level: ["least level", "nível mínimo"], node: ["node", "node"], text: ["text", "texto"], clear: ["clear", "limpar"],
-  pause: ["pause or go on", "pausar ou continuar"], waiting: ["nothing logged yet", "nada registrado ainda"],
+  pause: ["pause or go on", "pausar ou continuar"], waiting: ["What nodes log is shown here.", "O que os nodes registram aparece aqui."],
   count: ["{shown} of {all}", "{shown} de {all}"], more: ["{count} more while paused", "mais {count} durante a pausa"],
 });
 
@@ -35,11 +35,12 @@ class Log {
       return input;
     };
     const levels = h("select", { class: "level", title: words("log.level"), "aria-label": words("log.level"), onchange: () => { this.level = Number(levels.value); this._again(); } },
-      ...Object.entries(LEVELS).map(([value, name]) => h("option", { value, selected: Number(value) === this.level }, name)));
+      ...Object.entries(LEVELS).map(([value, name]) => h("option", { value, selected: Number(value) === this.level }, `≥ ${name}`)));
     this.count = h("span", { class: "dim count" });
     this.pauseButton = button("❚❚", words("log.pause"), () => { this.paused = !this.paused; this.pauseButton.ariaPressed = String(this.paused); this._tell(); }, { className: "pause" });
     this.list = h("ol", { class: "log", tabIndex: 0, "aria-label": words("panel.log") });
-    this.element.append(h("div", { class: "row" }, levels, field("node"), field("text"), this.count, this.pauseButton, button("✕", words("log.clear"), () => this._clear())), this.list);
+    this.hint = h("p", { class: "empty" }, words("log.waiting"));
+    this.element.append(h("div", { class: "row" }, levels, field("node"), field("text"), this.count, this.pauseButton, button("✕", words("log.clear"), () => this._clear())), this.hint, this.list);
     this._tell();
   }
 
@@ -72,16 +73,19 @@ class Log {
   _tell() {
     const { words } = this.app;
     this.count.textContent = this.paused && this.fresh.length ? words("log.more", { count: this.fresh.length })
-      : this.entries.length ? words("log.count", { shown: this.matching, all: this.entries.length }) : words("log.waiting");
+      : words("log.count", { shown: this.matching, all: this.entries.length });
+    this.hint.hidden = this.entries.length > 0;
   }
 
   frame() {
     if (!this.fresh.length) return;
     if (this.paused) return this._tell();
-    const fresh = this.fresh, { list } = this, atEnd = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
+    const fresh = this.fresh.sort((a, b) => a.stamp - b.stamp), isLate = fresh[0].stamp < this.entries.at(-1)?.stamp - 1000, { list } = this, atEnd = list.scrollHeight - list.scrollTop - list.clientHeight < 30;
     this.fresh = [];
     this.entries.push(...fresh);
+    if (isLate) this.entries.sort((a, b) => a.stamp - b.stamp); // what a node retained for late ones comes node by node
     if (this.entries.length > KEPT) this.entries.splice(0, this.entries.length - KEPT);
+    if (isLate) return this._again();
     const matching = fresh.filter((each) => this._matches(each));
     this.matching += matching.length;
     list.append(...matching.slice(-SHOWN).map(row));
@@ -93,7 +97,7 @@ class Log {
 
 function row({ level, node, text, place, stamp }) {
   const name = LEVELS[level] ?? `${level}`;
-  return h("li", { class: `level-${name.toLowerCase()}`, title: place }, h("time", {}, new Date(stamp).toLocaleTimeString("en-GB") + (stamp % 1000 / 1000).toFixed(3).slice(1)), h("b", {}, name), h("i", {}, node), h("span", {}, text));
+  return h("li", { class: `level-${name.toLowerCase()}`, title: place }, h("time", {}, new Date(stamp).toLocaleTimeString("en-GB") + (stamp % 1000 / 1000).toFixed(3).slice(1)), " ", h("b", {}, name), " ", h("i", {}, node), " ", h("span", {}, text));
 }
 
 export const panel = { id: "log", create: (element, app, options) => new Log(element, app, options) };

@@ -2,10 +2,10 @@
 
 import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
-import { number, Picker } from "./form.js";
+import { absence, number, Picker } from "./form.js";
 
 addPairs("parameters", {
-  node: ["node", "node"], none: ["no nodes with parameters", "nenhum node com parâmetros"], filter: ["filter", "filtrar"], again: ["read again", "ler de novo"],
+  node: ["node", "node"], none: ["no nodes with parameters", "nenhum node com parâmetros"], none_why: ["No node runs that has parameters. One to try: robolink launch wander", "Nenhum node com parâmetros em execução. Um para experimentar: robolink launch wander"], filter: ["filter", "filtrar"], again: ["read again", "ler de novo"],
   readonly: ["read-only parameter", "parâmetro só de leitura"], refused: ["{name}: {reason}", "{name}: {reason}"], refused_why: ["the node refused it", "o node recusou"],
   empty: ["no parameters", "sem parâmetros"], range: ["{low} to {high}", "de {low} a {high}"], set: ["{name} = {value}", "{name} = {value}"], unset: ["not set", "sem valor"],
 });
@@ -50,6 +50,7 @@ class Parameters {
     if (key === this.read) return;
     this.read = key;
     if (key) this._load(this.node);
+    else if (!here) this._tell(absence(this.app, this.node, words("parameters.none_why")), this.node ? "warn" : "dim");
   }
 
   async _load(node) {
@@ -77,7 +78,7 @@ class Parameters {
 
   _add(name, descriptor, value) {
     const { words } = this.app, editor = this._editor(name, descriptor, value);
-    const row = h("label", { title: [descriptor.description, descriptor.additional_constraints, TYPES[value.type]].filter(Boolean).join("\n") }, h("span", {}, name), editor.element);
+    const row = h("label", { title: [descriptor.description, descriptor.additional_constraints, TYPES[value.type]].filter(Boolean).join("\n") }, h("span", {}, ...name.split(/(?<=_)/).flatMap((part) => [part, h("wbr")])), editor.element);
     if (descriptor.read_only) {
       row.title = words("parameters.readonly");
       for (const each of row.querySelectorAll("input")) each.disabled = true;

@@ -2,7 +2,7 @@
 
 import { brief, button, download, h } from "../dom.js";
 import { addPairs } from "../words.js";
-import { csv, Series, ticks } from "./series.js";
+import { csv, Series, ticks, unitOf } from "./series.js";
 
 addPairs("plot", {
   empty: ["drag a number here from the tree of a topic, or click it there", "arraste um número da árvore de um topic para cá, ou clique nele"],
@@ -11,7 +11,7 @@ addPairs("plot", {
   pause: ["pause or go on", "pausar ou continuar"], canvas: ["drag: zoom; wheel: zoom; double click: back", "arraste ou roda: zoom; clique duplo: volta"],
 });
 
-const COLOURS = ["#4fb0ff", "#ffb74d", "#66bb6a", "#ef5350", "#ba68c8", "#4dd0e1", "#d4b106", "#f06292"];
+const COLOURS = ["c1", "c2", "c3", "c4", "c5", "c6", "c7", "c8"]; // of the style sheet
 const SPANS = [5, 10, 30, 60, 300];
 const BOTTOM = 18, SIDE = 48, TOP = 6;
 
@@ -57,7 +57,7 @@ class Plot {
   }
 
   _colours() {
-    this.ink = { line: this.app.colour("line"), dim: this.app.colour("dim"), accent: this.app.colour("accent") };
+    this.ink = Object.fromEntries(["line", "dim", "accent", "panel", ...COLOURS].map((name) => [name, this.app.colour(name)]));
     this.stale = true;
   }
 
@@ -116,13 +116,15 @@ class Plot {
     this.hint.hidden = this.series.length > 0;
     this.legend.replaceChildren(...this.series.map((each) => {
       const swatch = h("span", { class: "swatch" });
-      swatch.style.background = each.colour;
+      swatch.style.background = `var(--${each.colour})`;
       each.shown = h("output");
       const axis = button(each.axis ? "→" : "←", words("plot.axis"), () => { each.axis = 1 - each.axis; this._legend(); this.app.remember(); });
       return h("span", { class: "chip", "data-series": each.name }, swatch, each.name, each.shown, axis, button("✕", words("plot.remove", { name: each.name }), () => this.remove(each)));
     }));
     this.stale = true;
   }
+
+  _unit({ topic, path }) { return unitOf(this.app.topics.get(topic)?.type ?? "", path); }
 
   /** Times that are shown, in milliseconds. */
   _range() {
@@ -174,7 +176,7 @@ class Plot {
 
   _png() {
     this.stale = true;
-    this._draw(this.app.colour("panel"));
+    this._draw(this.ink.panel);
     this.canvas.toBlob((blob) => download("plot.png", blob));
   }
 
@@ -188,7 +190,7 @@ class Plot {
     }
     this.told = now;
     const { start, end } = this._range(), at = this.hover === undefined ? end : start + (end - start) * this.hover;
-    for (const each of this.series) each.shown.textContent = brief(each.at(at), 5);
+    for (const each of this.series) each.shown.textContent = `${brief(each.at(at), 5)} ${this._unit(each)}`;
   }
 
   _draw(ground) {
@@ -205,7 +207,7 @@ class Plot {
     if (ground) {
       context.fillStyle = ground;
       context.fillRect(0, 0, width, height);
-      this.series.forEach((each, i) => { context.fillStyle = each.colour; context.textAlign = "left"; context.fillText(each.name, SIDE + 6, TOP + 14 + 14 * i); });
+      this.series.forEach((each, i) => { context.fillStyle = this.ink[each.colour]; context.textAlign = "left"; context.fillText(each.name, SIDE + 6, TOP + 14 + 14 * i); });
     }
     const { start, end } = this._range(), second = this.series.some(({ axis }) => axis);
     const right = second ? width - SIDE : width - 8, bottom = height - BOTTOM;
@@ -253,6 +255,9 @@ class Plot {
       context.fillText(brief(at, 5), axis ? right + 5 : SIDE - 5, y + 4);
     }
     context.stroke();
+    const units = [...new Set(series.map((each) => this._unit(each)))];
+    context.textAlign = axis ? "right" : "left";
+    context.fillText(units.filter(Boolean).join(", "), axis ? right - 4 : SIDE + 4, TOP + 9);
     context.save();
     context.beginPath();
     context.rect(SIDE, 0, right - SIDE, bottom);
@@ -260,7 +265,7 @@ class Plot {
     context.lineWidth = 1.5;
     context.lineJoin = "round";
     for (const each of series) {
-      context.strokeStyle = each.colour;
+      context.strokeStyle = ink[each.colour];
       context.beginPath();
       each.trace(context, start, end, SIDE, (right - SIDE) / (end - start), bottom + low * up, up);
       context.stroke();

@@ -98,6 +98,16 @@ export class Series {
   }
 }
 
+/** Units of ROS 2's own messages (REP 103), by the end of the type and path of a field. */
+const UNITS = [
+  [/(linear_acceleration|Accel\S* .*linear)\.\w$/, "m/s²"], [/Accel\S* .*angular\.\w$/, "rad/s²"], [/(Twist\S*|Odometry) .*linear\.\w$/, "m/s"], [/((Twist\S*|Odometry) .*angular|angular_velocity)\.\w$/, "rad/s"],
+  [/(position|translation)\.\w$|(LaserScan|Range) .*ranges?(\[|$)|range_m..$|Point\S* .*\b[xyz]$/, "m"], [/LaserScan angle_|JointState position|turtlesim\S+ theta$/, "rad"], [/JointState velocity/, "rad/s"],
+  [/BatteryState voltage|cell_voltage/, "V"], [/BatteryState current$/, "A"], [/BatteryState (charge|capacity)/, "Ah"], [/temperature$/, "°C"], [/magnetic_field\.\w$/, "T"], [/fluid_pressure$/, "Pa"], [/(latitude|longitude)$/, "°"], [/altitude$/, "m"],
+];
+
+/** Unit of a field, or "" where it is not known. */
+export function unitOf(type, path) { return UNITS.find(([field]) => field.test(`${type} ${path}`))?.[1] ?? ""; }
+
 /** Round numbers between two bounds, about `count` of them. */
 export function ticks(low, high, count) {
   const rough = (high - low) / Math.max(1, count), power = 10 ** Math.floor(Math.log10(rough));

@@ -3,11 +3,11 @@
 import { partSchema } from "../connection.js";
 import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
-import { Form, Picker } from "./form.js";
+import { absence, Form, Picker } from "./form.js";
 import { Tree } from "./tree.js";
 
 addPairs("services", {
-  choose: ["service", "service"], none: ["no services", "nenhum service"], call: ["Call", "Chamar"], calling: ["calling…", "chamando…"],
+  choose: ["service", "service"], none: ["no services", "nenhum service"], none_why: ["No node serves anything of its own. Tick 'all' for what every node serves.", "Nenhum node serve algo próprio. Marque 'todos' para ver o que todo node serve."], call: ["Call", "Chamar"], calling: ["calling…", "chamando…"],
   answered: ["answered in {seconds} s", "respondido em {seconds} s"], hidden: ["all", "todos"], hidden_title: ["also those of parameters and actions", "também os de parâmetros e actions"],
 });
 
@@ -51,6 +51,7 @@ class Services {
     this.callButton.disabled = Boolean(why) || !found || this.busy;
     this.callButton.title = why;
     if (why) this._tell(why, "warn");
+    else if (!found) this._tell(absence(this.app, this.service, words("services.none_why")), this.service ? "warn" : "dim");
   }
 
   _choose(name) {
@@ -86,6 +87,7 @@ class Services {
   _tell(text, kind = "") {
     this.state.textContent = text;
     this.state.className = `state ${kind}`;
+    if (text) this.state.scrollIntoView({ block: "nearest" });
   }
 
   async _call() {
