@@ -256,7 +256,7 @@ def test_without_matplotlib_it_is_said_how_to_get_it(
 def test_everything_is_where_it_is_in_the_world() -> None:
     axes = Figure().add_subplot()
     kinds = drawing.draw_world(axes, load_world(WORLDS / "lab.yaml"))
-    assert [each.get_label() for each in kinds] == ["fixed", "can be pushed", "moves by itself"]
+    assert [each.get_label() for each in kinds] == ["can be pushed", "moves by itself"]
     assert axes.get_aspect() == 1.0
     assert [each.get_text() for each in axes.texts] == ["ada", "bob"]
     walls = [segment for each in axes.collections for segment in each.get_segments()]  # type: ignore[attr-defined]
