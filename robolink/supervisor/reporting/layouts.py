@@ -78,11 +78,9 @@ class Columns:
         text = fit(name, lines=False)
         self._names[name] = self._styled(text.encode(), style)
         self._loggers[name] = text.strip("/").replace("/", ".").encode()
-        if len(text) <= self._widest:
-            self._width = max(self._width, len(text))
-        self._cells = {
-            each: cell + b" " * (self._width - len(fit(each, lines=False))) for each, cell in self._names.items()
-        }
+        is_wider = self._width < len(text) <= self._widest
+        self._width = len(text) if is_wider else self._width
+        self._cells |= {each: self._cell(each) for each in (self._names if is_wider else [name])}
 
     def line(self, name: str, line: bytes) -> bytes:
         """Return a line of a process."""
@@ -99,6 +97,9 @@ class Columns:
         """Return lines of the launcher's own, over the `^C` with which a terminal shows that Ctrl-C was pressed."""
         rows = [self._row(OWN_NAME, severity.encode(), each.encode()) for each in fit(text).split("\n")]
         return b"\r" + b"".join(rows)
+
+    def _cell(self, name: str) -> bytes:
+        return self._names[name] + b" " * (self._width - len(fit(name, lines=False)))
 
     def _sender(self, name: str, logger: bytes) -> bytes:
         """Return what the name of a process does not say of a logger's."""
