@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from robolink.logging import Record
     from robolink.message import Message
     from robolink.running.timebase import TimeBase
-    from robolink.testing.recorder import Topic
+    from robolink.testing.recorder import Recorder, Topic
     from robolink.transport import Transport
 
 
@@ -155,6 +155,9 @@ class OneProcess:
         self.run_until(lambda: bool(program.nodes) or program.is_over, 0.0)
         nodes = program.nodes
         return nodes[0] if nodes else program
+
+    def settle(self, recorder: Recorder) -> None:
+        """Do nothing: in memory all know each other at once."""
 
     def stop(self, program: str) -> None:
         """End a program in order."""

@@ -19,6 +19,7 @@ from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
 from robolink.node import Node
 from robolink.qos import qos_profile_rosout_default
+from robolink.serialization import serialize_message
 from robolink.system import clocks, waits
 from robolink.testing.expectations import NodeFailure, OnlyInMemoryError
 from robolink.testing.faults import Faults
@@ -28,14 +29,14 @@ from robolink.testing.supervisor_thread import Launch
 from robolink.text.names import the_one
 from robolink.transport.port_sharing import free_domain
 from robolink.transport.zenoh import ZenohTransport
-from robolink.wire import NodeToken, graph_pattern
+from robolink.wire import DataKey, EndpointKind, EndpointToken, NodeToken, format_key, graph_pattern
 
 if TYPE_CHECKING:
     from robolink.launch.entry import System as LaunchSystem
     from robolink.message import Message
     from robolink.supervisor.events import Exited
     from robolink.task import Future
-    from robolink.testing.recorder import Topic
+    from robolink.testing.recorder import Recorder, Topic
     from robolink.transport import Transport
 
 NETWORK = "localhost"
@@ -87,6 +88,8 @@ class Processes:
         self._exits: queue.SimpleQueue[Exited] = queue.SimpleQueue()
         self._expected: set[int | None] = set()
         """Ids of the processes that the test itself has ended."""
+        self._answering: set[str] = set()
+        """Full names of new nodes that have answered at their parameter services."""
         self._shown: dict[str, str] = {}
         """Names of nodes, by their programs'."""
         with ExitStack() as stack:
@@ -171,21 +174,40 @@ class Processes:
         A script may have nodes that never spin: one that does not answer in a while is taken for made.
         """
         names = {each.full_node_name for each in nodes}
-        clients = [self.node.create_client(ListParameters, f"{each}/list_parameters") for each in names]
-        open_calls = dict.fromkeys(clients)
-        answers: list[Future[ListParameters.Response]] = []
+        clients = {each: self.node.create_client(ListParameters, f"{each}/list_parameters") for each in names}
+        open_calls = dict.fromkeys(names)
+        answers: dict[str, Future[ListParameters.Response]] = {}
 
         def all_answer() -> bool:
-            for each in [one for one in open_calls if one.service_is_ready()]:
+            for each in [one for one in open_calls if clients[one].service_is_ready()]:
                 del open_calls[each]
-                answers.append(each.call_async(ListParameters.Request()))
-            return has_ended() or (not open_calls and all(each.done() for each in answers))
+                answers[each] = clients[each].call_async(ListParameters.Request())
+            return has_ended() or (not open_calls and all(each.done() for each in answers.values()))
 
         try:
             self.run_until(all_answer, ANSWERS_WITHIN)
         finally:
-            for each in clients:
+            self._answering |= {name for name, answer in answers.items() if answer.done()}
+            for each in clients.values():
                 self.node.destroy_client(each)
+
+    def settle(self, recorder: Recorder) -> None:
+        """Wait until each new node that answers at all has answered the recorder, too: it knows what is recorded then.
+
+        Else what it publishes because of the test's first message may be gone before it knows that anybody hears it.
+        """
+        own, graph = self.node.get_fully_qualified_name(), self.node.context.graph
+        publishers = [each for each in graph.endpoints(EndpointKind.PUBLISHER) if each.full_node_name != own]
+        keys = {_key(each) for each in publishers}
+        self.run_until(lambda: keys <= recorder.topics.keys(), ANSWERS_WITHIN)
+        request = bytes(serialize_message(ListParameters.Request()))
+        answers = [
+            recorder.ask(_key(each), request)
+            for name in self._answering
+            for each in graph.endpoints(EndpointKind.SERVICE, name=f"{name}/list_parameters")
+        ]
+        self._answering.clear()
+        self.run_until(lambda: all(each.is_set() for each in answers), ANSWERS_WITHIN)
 
     def stop(self, program: str) -> None:
         """End a program in order."""
@@ -297,6 +319,10 @@ class Processes:
         for each in launches:
             waits.join(each.thread, DOWN_WITHIN)
         self._stack.close()
+
+
+def _key(end: EndpointToken) -> str:
+    return format_key(DataKey(end.domain, end.name, end.type_name, end.type_hash))
 
 
 def _spec(what: type[Node] | str | Path) -> str:

@@ -22,12 +22,16 @@ from robolink.wire import (
     format_key,
     gid_of,
     graph_pattern,
+    pack_attachment,
     parse_token,
     unpack_attachment,
 )
 
 RETAINED = 20
 """Count of messages retained of each topic."""
+
+_GID = bytes(16)
+"""Of the calls: they are nobody's in the graph."""
 
 _LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -72,6 +76,7 @@ class Recorder:
         self._numbers = itertools.count()
         self._queues: list[TopicQueue] = []
         self._followers: list[Callable[[Topic], object]] = []
+        self._calls: list[Handle] = []
         self._lock = threading.RLock()  # over Zenoh, news of publishers come on a thread of its own
         transport.watch(graph_pattern(domain), self._on_token)
 
@@ -137,6 +142,21 @@ class Recorder:
         """Call `callback(payload)` with all that is published on a topic from now on, where it is published."""
         read = self._transport.read
         self._transport.subscribe(topic.key, _LATCHED, lambda arrived: callback(read(arrived).payload))
+
+    def ask(self, key: str, payload: bytes) -> threading.Event:
+        """Call a service; return an event that is set once all answers are there.
+
+        The call leaves behind the subscriptions so far, on the same way: whoever answers knows them.
+        """
+        answered = threading.Event()
+
+        def take(reply: Any) -> None:
+            if reply is None:
+                answered.set()
+
+        attachment = pack_attachment(len(self._calls) + 1, self._now(), _GID)
+        self._calls.append(self._transport.call(key, payload, attachment, take))
+        return answered
 
     def arrivals(self, topic: Topic, sink: Callable[[Any], object]) -> None:
         """Call `sink` with all that arrives on a topic from now on, where it is published; `sample_of` reads it."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from robolink.message import Message
     from robolink.node import Node
     from robolink.testing.faults import Faults
-    from robolink.testing.recorder import Topic
+    from robolink.testing.recorder import Recorder, Topic
     from robolink.transport import Transport
 
 
@@ -100,6 +100,9 @@ class Stage(Protocol):
 
     def launch(self, system: LaunchSystem, faults: str | PathLike[str] | None = None) -> None:
         """Start the nodes of a launch file, with the faults of a file, which may concern their very start."""
+
+    def settle(self, recorder: Recorder) -> None:
+        """Wait until those that have been started know that the recorder hears them."""
 
     def stop(self, program: str) -> None:
         """End a program in order."""

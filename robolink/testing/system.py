@@ -125,6 +125,7 @@ class System:
         self._check_open()
         request = NodeRequest(startable(what), name, namespace, parameters or {}, remappings or {}, tuple(args))
         started = self._stage.start(request)
+        self._stage.settle(self.story.recorder)
         self._parameters.note_given(started, request.parameters)
         self._begin()
         return started
@@ -157,6 +158,7 @@ class System:
 
         self._check_open()
         self._stage.launch(read(file, arguments or {}, set or {}), faults)
+        self._stage.settle(self.story.recorder)
         self._parameters.note_set(set or {})
         self._begin()
 
@@ -187,6 +189,7 @@ class System:
         __tracebackhide__ = True
         self._check_open()
         started = self._stage.restart(self._stage.program_of(node))
+        self._stage.settle(self.story.recorder)
         self._begin()
         return started
 

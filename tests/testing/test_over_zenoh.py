@@ -12,10 +12,13 @@ import pytest
 
 from robolink import Node
 from robolink.exceptions import NotFoundError
+from robolink.interfaces.std_msgs.msg import Int32
 from robolink.testing import ExpectationError, NodeFailure, System
 from robolink.testing.expectations import OnlyInMemoryError
+from robolink.testing.recorder import Recorder, Topic
 from robolink.transport.port_sharing import free_domain
 from tests.support.commands import MARK
+from tests.support.counting import Doubler
 from tests.support.nodefiles import load_node_file
 
 pytest_plugins = ["pytester"]
@@ -174,3 +177,18 @@ def test_ctrl_c_leaves_no_process(pytester: pytest.Pytester, mark: str) -> None:
 def test_two_systems_at_once_have_domains_of_their_own() -> None:
     with free_domain() as one, free_domain() as other:
         assert one != other
+
+
+def test_what_a_new_node_publishes_first_is_heard_by_a_late_recorder(monkeypatch: pytest.MonkeyPatch) -> None:
+    record = Recorder._record
+
+    def late(self: Recorder, topic: Topic) -> None:
+        if topic.name == "/double":
+            time.sleep(1.0)  # a busy machine, on the thread that brings the news of publishers
+        record(self, topic)
+
+    monkeypatch.setattr(Recorder, "_record", late)
+    with System(transport="zenoh") as system:
+        system.start(Doubler)
+        system.publish("count", Int32(data=4))
+        assert system.expect("double").data == 8
