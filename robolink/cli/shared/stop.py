@@ -1,4 +1,4 @@
-"""Whether STOP holds, for commands that look at a running system: what the publishers of /e_stop keep for late ones."""
+"""State of STOP, for commands that look at a running system: from the messages that publishers of /e_stop retain."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def stop_holds(transport: Transport, ends: Iterable[EndpointToken]) -> bool:
     keys = {key for each in keepers for key in keys_of(each)}
     handles = [transport.subscribe(key, QOS, arrived.put) for key in sorted(keys)]
     try:
-        said = _said(transport, arrived, len(keepers))
+        values = _values(transport, arrived, len(keepers))
     finally:
         for each in handles:
             each.close()
-    return said[max(said)] if said else False
+    return values[max(values)] if values else False
 
 
 def is_keeper(end: EndpointToken) -> bool:
@@ -51,8 +51,8 @@ def is_keeper(end: EndpointToken) -> bool:
     return latched and (end.kind, end.name, end.type_name) == (EndpointKind.PUBLISHER, TOPIC, TYPE)
 
 
-def _said(transport: Transport, arrived: queue.SimpleQueue[Any], keepers: int) -> dict[int, bool]:
-    """Return what was said by the time at which it was sent, once all keepers were heard, or after a while."""
+def _values(transport: Transport, arrived: queue.SimpleQueue[Any], keepers: int) -> dict[int, bool]:
+    """Return the values by the times at which they were sent, once all keepers were heard, or after a while."""
     found: dict[int, bool] = {}
     heard: set[bytes] = set()
     deadline = clocks.monotonic() + WITHIN

@@ -57,7 +57,7 @@ class Drives(NamedTuple):
 
 
 def drives_of(ends: Iterable[EndpointToken]) -> Drives:
-    """Return who obeys the lock and who does not, among publishers and subscriptions; hidden nodes are no robots."""
+    """Return the nodes that obey the lock, and those that do not, of these ends; hidden nodes are not robots."""
     shown = [each for each in ends if not each.node_name.startswith("_")]
     subscriptions = [each for each in shown if each.kind is EndpointKind.SUBSCRIPTION]
     obeyed = {each.full_node_name for each in subscriptions if each.name == TOPIC and each.type_name == TYPE}
@@ -96,7 +96,7 @@ class Stopping:
         self._lock = Lock(system.node, self._on_change, keeps=keeps)
         self._drives = drives_of(())
         self._known: set[bytes] = set()
-        self._told = ""
+        self._sent = ""
         self._zeros: dict[str, tuple[Publisher[Any], type[Any]]] = {}
         self._now = self._changed_at = self._zeros_due = self._again_due = 0.0
         self._listening: list[Handle] = []
@@ -124,7 +124,7 @@ class Stopping:
             self._lock.press()
         else:
             self._lock.release()
-        self._told = ""  # also what has not changed: who pressed waits for it
+        self._sent = ""  # also what has not changed: who pressed waits for it
         self._publish_state()
 
     def state(self) -> str:
@@ -185,8 +185,8 @@ class Stopping:
 
     def _publish_state(self) -> None:
         state = self.state()
-        if state != self._told:
-            self._told = state
+        if state != self._sent:
+            self._sent = state
             self._tell(state)
 
     def _send_zeros(self) -> None:
