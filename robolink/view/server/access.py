@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-import re
 import socket
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import parse_qs, unquote, urlsplit
+
+from robolink.view.server.lean import lean
 
 PAGE = Path(__file__).parents[1] / "page"
 
@@ -38,12 +39,6 @@ HEADERS = {
     "Connection": "close",
 }
 """Headers of every answer."""
-
-_COMMENT = re.compile(rb"^[ \t]*(?://.*|/\*(?:[^*]|\*(?!/))*\*/[ \t]*)$", re.MULTILINE)
-"""Comments of a script or a style sheet that have their lines to themselves."""
-
-_MARGIN = re.compile(rb"^[ \t]+|[ \t]+// [^\"'`\n]*$", re.MULTILINE)
-"""Indentation, and comments at the end of a line in which no text can end: `"a // b"` is not one."""
 
 
 class Verdict(NamedTuple):
@@ -186,14 +181,5 @@ def find(path: str, folder: Path = PAGE) -> File | None:
     name = "index.html" if path == "/" else path.removeprefix("/")
     for each in folder.rglob("*"):
         if each.relative_to(folder).as_posix() == name and each.suffix in TYPES and each.is_file():
-            return File(TYPES[each.suffix], _lean(each))
+            return File(TYPES[each.suffix], lean(each.read_bytes(), each.suffix))
     return None
-
-
-def _lean(file: Path) -> bytes:
-    """Return the bytes of a file that a browser needs: without comments and indentation, each line where it was."""
-    body = file.read_bytes()
-    if file.suffix not in {".js", ".css"}:
-        return body
-    bare = _COMMENT.sub(lambda found: b"\n" * found.group().count(b"\n"), body)
-    return _MARGIN.sub(b"", bare) if file.suffix == ".js" else bare

@@ -37,19 +37,6 @@ def test_the_page_weighs_at_most_90_kb() -> None:
     assert sum(exercises.values()) <= MOST_OF_EXERCISES, exercises
 
 
-def test_scripts_are_sent_without_comments_and_with_their_lines() -> None:
-    for each in FILES.rglob("*.js"):
-        file = find(f"/{each.relative_to(FILES).as_posix()}")
-        assert file is not None
-        before, after = each.read_bytes().splitlines(), file.body.splitlines()
-        assert len(before) == len(after)
-        for one, other in zip(before, after, strict=True):
-            gone = one.strip().removeprefix(other).strip()
-            assert one.strip().startswith(other)
-            assert not gone or gone.startswith((b"//", b"/**", b"*")), one
-        assert sum(map(len, after)) < sum(map(len, before))
-
-
 class TestInTheBrowser:
     """Actions of a person."""
 

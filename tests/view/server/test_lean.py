@@ -1,0 +1,71 @@
+"""Scripts and style sheets lose what a browser does not need, and nothing else."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import robolink.view
+from robolink.view.server.lean import lean
+
+FILES = [
+    each for each in Path(str(robolink.view.__file__)).with_name("page").rglob("*") if each.suffix in {".js", ".css"}
+]
+
+
+@pytest.mark.parametrize(
+    ("line", "sent"),
+    [
+        ("  const a = b + +c; // why", "const a=b + +c;"),
+        ('f("a , b", c ? { d: 1 } : `x : ${e} , y`);', 'f("a , b",c?{d:1}:`x : ${e} , y`);'),
+        ('a = b ? `${c ? ` , ` : ""} , ` : d;', 'a = b ? `${c ? ` , ` : ""} , ` : d;'),
+        ("a = `${f({ b: 1 }, ` , `)} , `;", "a = `${f({ b: 1 }, ` , `)} , `;"),
+        ("a = b.replace(/ , /g, c);", "a = b.replace(/ , /g, c);"),
+        ("a = b / c, d;", "a=b / c,d;"),
+        ("const text = 'it , is', more = \"don't , do\";", "const text='it , is',more=\"don't , do\";"),
+        ("/** Say\n * more. */\nlet a = 1;", "\n\nlet a=1;"),
+    ],
+)
+def test_spaces_of_code_go_and_those_of_texts_stay(line: str, sent: str) -> None:
+    assert lean(line.encode(), ".js").decode() == sent
+
+
+def test_of_the_page_only_spaces_and_comments_go() -> None:
+    assert len(FILES) > 30
+    for each in FILES:
+        text = each.read_text(encoding="utf-8")
+        sent = lean(text.encode(), each.suffix).decode()
+        assert len(text.split("\n")) == len(sent.split("\n")), each
+        for before, after in zip(text.split("\n"), sent.split("\n"), strict=True):
+            kept = re.sub(r"\s", "", before), re.sub(r"\s", "", after)
+            assert kept[0].startswith(kept[1]), before
+            gone = kept[0].removeprefix(kept[1])
+            assert not gone or not kept[1] or gone.startswith("//"), before
+        assert len(sent) < len(text)
+
+
+def test_no_template_of_the_page_has_two_lines() -> None:
+    """What is left out of a line is found out in this line alone."""
+    for each in FILES:
+        for line in each.read_text(encoding="utf-8").split("\n"):
+            if not line.lstrip().startswith(("//", "*", "/*")):
+                assert line.count("`") % 2 == 0, f"{each.name}: {line}"
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed, which reads scripts")
+def test_scripts_are_read_as_before(tmp_path: Path) -> None:
+    for each in FILES:
+        if each.suffix == ".js":
+            (tmp_path / f"{each.stem}.mjs").write_bytes(lean(each.read_bytes(), ".js"))
+    for each in tmp_path.iterdir():
+        done = subprocess.run(["node", "--check", str(each)], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+def test_other_files_stay_as_they_are() -> None:
+    assert lean(b"<p> a , b </p>", ".html") == b"<p> a , b </p>"
