@@ -48,7 +48,7 @@ const WORDS = {
     "world.fixed": "referencial fixo", "world.goal": "pose de destino (g)", "world.initial": "pose inicial (i)",
     "world.tool": "clique, e arraste para dar a direção", "world.sent": "{topic}: x {x}, y {y}, {degrees}° em {frame}",
     "world.unconnected": "sem ligação com {frame}, desenhado na origem: {frames}", "world.none": "nada para mostrar ainda",
-    "world.unheard": "ninguém escuta {topic}", "world.unheard.goal": "ninguém escuta {topic}: inicie um nó que dirige até lá, como: robolink run goto",
+    "world.unheard": "ninguém escuta {topic}", "world.unheard.goal": "ninguém escuta {topic}: inicie um node que dirige até lá, como: robolink run goto",
     "key.m": "mundo: camadas, seguir, referencial fixo",
     "world.tf": "referenciais tf", "world.trails": "rastros", "world.grid": "grade", "world.names": "nomes",
     "world.tool.fit": "tudo", "world.tool.goal": "destino", "world.tool.pose": "pose", "world.zoomin": "aproximar (+)", "world.zoomout": "afastar (-)",
