@@ -101,12 +101,12 @@ class Lock:
             self.withdraw()
 
     def repeat(self) -> None:
-        """Say again that it holds, if it does: for who listens only now, and gets nothing of before."""
+        """Publish the true again while it holds, for volatile listeners that came later."""
         if self.held and self._keeps:
             self._say(True)
 
     def withdraw(self) -> None:
-        """Say nothing more, unless it holds: what this node has said reaches no one who comes later."""
+        """Destroy the publisher unless it holds, so that nobody who comes later gets what this node published."""
         if self._publisher is not None and not self.held:
             self._node.destroy_publisher(self._publisher)
             self._publisher = None
