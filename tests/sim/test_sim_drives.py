@@ -146,3 +146,23 @@ def test_the_place_of_a_car_is_the_middle_of_its_rear_axle() -> None:
     assert twist == pytest.approx((1.0, 1.0, 0.0))  # the rear axle itself never slides
     middle = pose.theta + 0.005
     assert (after.y - pose.y) * math.cos(middle) == pytest.approx((after.x - pose.x) * math.sin(middle), abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["type: diff, v_max: 1.5", "type: omni, v_max: 1.5", f"{CAR}, a_max: 1.0"])
+def test_a_robot_that_is_held_brakes_as_hard_as_its_wheels_grip(kind: str) -> None:
+    made = world(kind)
+    robot = drive(made, 4.0, 1.5)
+    assert robot.twist.v == pytest.approx(1.5)
+    robot.hold()
+    steps = 0
+    while robot.twist.v > 1e-9:
+        robot.command(1.5, 0.0)
+        made.step()
+        steps += 1
+    assert steps == math.ceil(1.5 / (0.8 * 9.81 * 0.01))
+    place = robot.pose
+    assert gap(drive(made, 10.0, 1.5, 1.0, 1.0).pose, place) < 1e-9
+    robot.release()
+    made.step()
+    assert robot.twist.v == 0.0  # it obeys the next command, and none of before
+    assert drive(made, 0.1, 1.5).twist.v < 0.2  # within the drive's limits again

@@ -50,6 +50,18 @@ def lively(robots: int = 12) -> World:
     return World(load_world("lively.yaml", text=LIFE + "\n".join(lines)))
 
 
+def disturb(world: World, step: int) -> None:
+    """Take robots away, hold some for a while, and let others jump and come."""
+    if step == 150:
+        world.delete("r3")
+    if step in (200, 290):
+        for name in ("r1", "r2", "r4"):
+            (world.robots[name].hold if step == 200 else world.robots[name].release)()
+    if step == 300:
+        world.robots["r5"].teleport(Pose(3.0, 3.9, 1.0))
+        world.spawn(world.robots["r1"].description.__class__("late", Pose(1.0, 4.0)))
+
+
 def live(world: World, seconds: float) -> str:
     """Drive about, with robots that come, go and jump; give a digest of all that is true, believed and sensed."""
     digest = hashlib.sha256()
@@ -61,11 +73,7 @@ def live(world: World, seconds: float) -> str:
                     robot.command(v, w, v / 2)
                 else:
                     robot.turn_wheels({"a": 10 * v, "b": 10 * w})
-        if step == 150:
-            world.delete("r3")
-        if step == 300:
-            world.robots["r5"].teleport(Pose(3.0, 3.9, 1.0))
-            world.spawn(world.robots["r1"].description.__class__("late", Pose(1.0, 4.0)))
+        disturb(world, step)
         world.step()
         for robot, sensor, value in world.readings():
             seen = value.ranges.tobytes() if isinstance(value, Scan) else repr(value).encode()

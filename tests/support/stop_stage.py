@@ -31,6 +31,8 @@ class Speed(NamedTuple):
     """Speed of the robot when a message arrived: the larger of m/s and rad/s."""
 
     at: float
+    stamp: float
+    """Time of the world, in seconds: it stands still where the machine has no time for the world."""
     value: float
 
 
@@ -41,6 +43,8 @@ class Stood(NamedTuple):
     """Since STOP was pressed: with the browser, the page, the server and the network."""
     said: float
     """Since STOP was said on its topic."""
+    simulated: float
+    """Since then, in the time of the world."""
 
 
 class Stage:
@@ -91,7 +95,9 @@ class Stage:
 
     def _on_odometry(self, odometry: Odometry) -> None:
         twist = odometry.twist.twist
-        self.speeds.append(Speed(time.monotonic(), max(map(abs, (twist.linear.x, twist.linear.y, twist.angular.z)))))
+        stamp = odometry.header.stamp.sec + odometry.header.stamp.nanosec / 1e9
+        fastest = max(map(abs, (twist.linear.x, twist.linear.y, twist.angular.z)))
+        self.speeds.append(Speed(time.monotonic(), stamp, fastest))
 
     def _on_stop(self, message: Bool) -> None:
         if message.data:
@@ -112,10 +118,13 @@ class Stage:
         end = time.monotonic() + hold
         until(lambda: time.monotonic() > end, hold + 10.0)
         seen = list(self.speeds)
-        moving = [each.at for each in seen if each.value >= STANDS and each.at > begin]
+        moving = [each for each in seen if each.value >= STANDS and each.at > begin]
         assert seen[-1].at > end - 0.5, "nothing more was heard of the robot"
-        last = max(moving, default=begin)
-        return Stood(last - begin, max(0.0, last - self.said_at[0]))
+        if not moving:
+            return Stood(0.0, 0.0, 0.0)
+        last, said = moving[-1], self.said_at[0]
+        then = max((each.stamp for each in seen if each.at <= said), default=seen[0].stamp)
+        return Stood(last.at - begin, max(0.0, last.at - said), max(0.0, last.stamp - then))
 
     def close(self) -> None:
         self._ended.set()

@@ -157,8 +157,8 @@ class Hub:
             self.source.sweep()
         except Exception as error:  # noqa: BLE001 - a message that cannot be read; robots must be stopped all the same
             self.fail(error)
-        ticking = [self.stopping] if self.stopping is not None else []
-        for each in [*ticking, *self.clients]:
+        ticking: list[Stopping | Client] = [*self.clients]
+        for each in ticking if self.stopping is None else [self.stopping, *ticking]:
             try:
                 each.tick(now)
             except Exception as error:  # noqa: BLE001 - the other clients go on

@@ -22,8 +22,8 @@ pytestmark = [pytest.mark.processes, needs_chromium]
 SYSTEMS = ("wander", "follow", "teleop", "track")
 WITHIN = 0.3
 """Seconds within which the robot stands."""
-BUSY = 1.0
-"""More seconds that a machine which runs other tests may take from the press to what is said on the topic."""
+BUSY = 3.0
+"""More seconds that a machine which runs other tests may take from the press to what is said and heard."""
 LONG, SHORT = 10.0, float(os.environ.get("ROBOLINK_STOP_SECONDS", "1"))
 """Seconds for which it stands: once in each system, and in all other ways."""
 
@@ -95,7 +95,7 @@ def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float)
 def test_the_robot_stands_in_every_way_whoever_sends_commands(browser: Browser, name: str) -> None:
     with staged(name) as stage:
         found = stop_in_every_way(browser, stage, LONG, SHORT)
-    late = {way: each for way, each in found.items() if each.said > WITHIN or each.pressed > WITHIN + BUSY}
+    late = {way: each for way, each in found.items() if each.simulated > WITHIN or each.pressed > WITHIN + BUSY}
     assert not late
 
 
@@ -126,7 +126,8 @@ def main() -> None:
             with staged(name) as stage:
                 found = stop_in_every_way(browser, stage, LONG, LONG)
             for way, stood in found.items():
-                sys.stdout.write(f"{name} {way}: {stood.pressed:.3f} s, and {stood.said:.3f} s since it was said\n")
+                since = f"{stood.said:.3f} s since it was said, {stood.simulated:.3f} s of the world's"
+                sys.stdout.write(f"{name} {way}: {stood.pressed:.3f} s, {since}\n")
             sys.stdout.flush()
 
 
