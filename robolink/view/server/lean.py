@@ -14,10 +14,10 @@ _MARGIN = re.compile(r"^[ \t]+|[ \t]+// [^\"'`\n]*$", re.MULTILINE)
 _TEXT = re.compile(r"""("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|`(?:\\.|[^`\\])*`)""")
 """Strings and templates of a line. A template within a template ends the outer one here: `_is_whole` finds that out."""
 
-_SPACE = re.compile(r" ?([{}();,:=<>*?&|]) ?")
-"""Spaces around signs that need none; those around + and - stay, as `a + +b` is not `a++b`."""
+_SPACE = re.compile(r" ?([][{}();,:=<>*?&|!]) ?|(?:^|(?<=[\w)\]])) ([+/-]) (?=[\w(\[]|$)")
+"""Spaces around signs that need none; those of + and - only between two operands: `a + +b` is not `a++b`."""
 
-_STYLE = re.compile(r"([{};:,]) ")
+_STYLE = re.compile(r";?(?: ?([{}])|([;:,])) ")
 
 
 @lru_cache(256)
@@ -32,7 +32,7 @@ def lean(body: bytes, suffix: str) -> bytes:
         return body
     bare = _COMMENT.sub(lambda found: "\n" * found.group().count("\n"), body.decode())
     if suffix == ".css":
-        return _STYLE.sub(r"\1", bare).encode()
+        return _STYLE.sub(r"\1\2", bare).encode()
     return "\n".join(_tight(each) for each in _MARGIN.sub("", bare).split("\n")).encode()
 
 
@@ -42,7 +42,7 @@ def _tight(line: str) -> str:
     code = "".join(parts[::2])
     if "`" in code or "/" in code.replace(" / ", "") or not all(map(_is_whole, parts[1::2])):
         return line
-    parts[::2] = [_SPACE.sub(r"\1", each) for each in parts[::2]]
+    parts[::2] = [_SPACE.sub(r"\1\2", each) for each in parts[::2]]
     return "".join(parts)
 
 
