@@ -45,39 +45,24 @@ export function asked(hash) {
   return names.length ? made(names.map(([id, topic]) => [50, [100, topic ? [id, { topic }] : id]])) : null;
 }
 
-function parts({ turtle, command, twist }) {
+function screen(kind, { turtle, command, twist, images, spatial }) {
   const series = ["linear.x", "angular.z"].map((path) => ({ topic: command, path: twist + path }));
-  return {
-    world: turtle ? "turtlesim" : "world",
-    messages: command ? ["topics", { topic: command, open: true }] : "topics",
-    plot: command ? ["plot", { seconds: 30, series }] : "plot",
-  };
+  const world = turtle ? "turtlesim" : "world", picture = images ? ["images"] : [];
+  const messages = [command ? ["topics", { topic: command, open: true }] : "topics", "log"], plot = command ? ["plot", { seconds: 30, series }] : "plot";
+  if (kind === "empty") return [];
+  if (kind === "learn") return [[100, [100, "learn"]]];
+  if (kind === "robots") return [[72, [100, world]], [28, [100, "topics", "log", "teleop", ...picture]]];
+  if (kind === "bag") return spatial ? [[62, [100, world]], [38, [56, ...picture, ...messages], [44, plot]]] : [[50, [100, ...picture, ...messages]], [50, [100, plot]]];
+  if (kind === "topics") return [[50, [100, "topics"]], [50, [60, ...(spatial ? [world] : []), "graph"], [40, "log"]]];
+  if (kind === "drive") return [[65, [100, world]], [35, [56, ...messages, "teleop"], [44, plot]]];
+  return spatial || command ? [[55, [58, world], [42, plot]], [45, [58, "images"], [42, ...messages, "teleop"]]] : [[60, [100, "images"]], [40, [100, ...messages]]];
 }
 
-function screen(kind, found) {
-  const { world, messages, plot } = parts(found), { images, spatial, command } = found;
-  const picture = images ? ["images"] : [];
-  switch (kind) {
-    case "empty": return [];
-    case "learn": return [[100, [100, "learn"]]];
-    case "drive": return [[65, [100, world]], [35, [56, messages, "log", "teleop"], [44, plot]]];
-    case "robots": return [[72, [100, world]], [28, [100, "topics", "log", "teleop", ...picture]]];
-    case "camera": return spatial || command ? [[55, [58, world], [42, plot]], [45, [58, "images"], [42, messages, "log", "teleop"]]] : [[60, [100, "images"]], [40, [100, "topics", "log"]]];
-    case "bag": return spatial ? [[62, [100, "world"]], [38, [56, ...picture, messages, "log"], [44, plot]]] : [[50, [100, ...picture, messages]], [50, [56, plot], [44, "log"]]];
-    default: return [[50, [100, "topics"]], [50, [60, ...(spatial ? ["world"] : []), "graph"], [40, "log"]]];
-  }
-}
-
+/** Pages of the panels that a screen has: the first with what one looks at, above the stick. */
 function phone(kind, found) {
-  const { world, messages, plot } = parts(found), picture = found.images ? ["images"] : [];
-  const pages = (...ids) => ids.map((id) => [100, [100, id]]);
-  switch (kind) {
-    case "empty": return [];
-    case "learn": return pages("learn");
-    case "bag": return [[100, [100, ...(found.spatial ? ["world"] : []), ...picture, ...(found.spatial || found.images ? [] : ["topics"])]], ...pages(messages, plot, "log")];
-    case "topics": return pages("topics", found.spatial ? "world" : "graph", "log", "plot");
-    default: return [[100, [58, world, ...picture], [42, "teleop"]], ...pages(messages, plot, "log")];
-  }
+  const ids = screen(kind, found).flatMap(([, ...cells]) => cells.flatMap(([, ...tabs]) => tabs)), above = ids.filter((id) => /^(world|turtlesim|images)$/.test(id));
+  const first = ids.includes("teleop") ? [[100, [58, ...above], [42, "teleop"]]] : above.length ? [[100, [100, ...above]]] : [];
+  return [...first, ...ids.filter((id) => id !== "teleop" && !above.includes(id)).map((id) => [100, [100, id]])];
 }
 
 /** Layout of [[width, [height, panel, panel ...] ...] ...]; a panel is its name, or [name, options]. */
@@ -93,7 +78,7 @@ export function restored(kept) {
       width: Number(width) || 50,
       cells: cells.map(({ height, current, tabs }) => ({
         height: Number(height) || 50, current: Number(current) || 0,
-        tabs: tabs.filter(({ id }) => PANELS.includes(id)).map(({ id, options, given }) => ({ id, options: options ?? {}, given })),
+        tabs: tabs.filter(({ id }) => PANELS.includes(id)).map((tab) => ({ options: {}, ...tab })),
       })).filter(({ tabs }) => tabs.length),
     }));
     return { columns: columns.filter(({ cells }) => cells.length) };

@@ -136,7 +136,7 @@ test("each kind has a layout of panels that there are, on a phone too", () => {
     }
   }
   assert.deepEqual(ids(layoutOf("drive", ROBOT, false)), ["world", "topics|log|teleop / plot"]);
-  assert.deepEqual(ids(layoutOf("camera", { ...ROBOT, images: true }, true)), ["world|images / teleop", "topics", "plot", "log"]);
+  assert.deepEqual(ids(layoutOf("camera", { ...ROBOT, images: true }, true)), ["world|images / teleop", "plot", "topics", "log"]);
   const [messages, plot] = ["topics", "plot"].map((id) => tabsOf(layoutOf("drive", { ...ROBOT, twist: "twist." }, false)).find((tab) => tab.id === id).options);
   assert.deepEqual([messages.topic, plot.series], ["/r/cmd_vel", [{ topic: "/r/cmd_vel", path: "twist.linear.x" }, { topic: "/r/cmd_vel", path: "twist.angular.z" }]]);
 });

@@ -60,7 +60,7 @@ def test_the_layout_follows_what_is_there(browser: Browser) -> None:
         kind(page, "empty")
         text = browser.js("document.querySelector('.nothing').innerText")
         assert "robolink launch wander" in text
-        assert "domain 0, network localhost (this machine)" in text
+        assert "domain 0 of network localhost" in text
         page.picture("layout_empty")
         node = Node("other", context=page.system.new_context())
         node.create_publisher(String, "chatter", 10)

@@ -45,7 +45,7 @@ def test_one_drives_below_the_world_or_the_camera(browser: Browser) -> None:
     with phone(browser) as page:
         assert browser.js(PANELS)[0] == "world|images / teleop"
         pages = browser.js("[...document.querySelectorAll('.tabs button')].map((each) => each.innerText)")
-        assert pages == ["Drive", "Topics", "Plot", "Log"]
+        assert pages == ["Drive", "Plot", "Topics", "Log"]
         left, top, right, bottom = box(browser, ".stick")
         assert right - left >= 150
         assert top > 844 / 2, "where thumbs are"
