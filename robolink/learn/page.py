@@ -6,6 +6,7 @@ import contextlib
 import itertools
 import threading
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 from robolink.exceptions import NotFoundError, RobolinkError
@@ -19,11 +20,14 @@ from robolink.learn.words import words
 from robolink.supervisor.monitoring.file_watch import Changes
 from robolink.supervisor.monitoring.periodic import PeriodicThread
 from robolink.system import waits
+from robolink.system.files import read_plain
 from robolink.system.terminal import fit, shown
 
 Check = Callable[..., Report]
 Operation = dict[str, Any]
 """Operation for the page, as `robolink.view.server.learning` describes it: its name under `op`, and its fields."""
+LARGEST_CODE = 100_000
+"""Largest file whose code the page shows, in bytes."""
 WARNING, ERROR = 1, 2
 """Levels of a status that the page shows."""
 
@@ -51,7 +55,8 @@ class PageExercises:
         self._folder, self._reported, self._check = folder, reported, check
         self._by_name = {each.name: each for each in folder.course}
         self._current = folder.chosen().name
-        self._reports: dict[str, tuple[int, Report]] = {}
+        self._reports: dict[str, tuple[int, Report, str | None]] = {}
+        """Last report of each exercise, with its number and the code that was checked."""
         self._numbers = itertools.count(1)
         self._waiting: dict[str, None] = {}
         self._checking: str | None = None
@@ -211,12 +216,13 @@ class PageExercises:
                     self._tell(self.state())
 
     def _check_one(self, exercise: Exercise) -> None:
-        folder = self._folder
-        report = self._check(exercise, folder.file_of(exercise), folder.language, stop=self._stop)
+        folder, file = self._folder, self._folder.file_of(exercise)
+        code = code_of(file)
+        report = self._check(exercise, file, folder.language, stop=self._stop)
         with self._lock:
             if self._stop.is_set():
                 return
-            self._reports[exercise.name] = next(self._numbers), report
+            self._reports[exercise.name] = next(self._numbers), report, code
             self._checking = None
             with self._telling():
                 folder.reload()
@@ -229,6 +235,8 @@ class PageExercises:
     def _detail(self, exercise: Exercise) -> Operation:
         """Return all that the page shows of one exercise."""
         language, hints = self._folder.language, exercise.settings.hints
+        file = self._folder.file_of(exercise)
+        code = code_of(file)
         count = self._folder.progress.hints.get(exercise.name, 0)
         found = self._reports.get(exercise.name)
         return {
@@ -237,7 +245,10 @@ class PageExercises:
             "text": exercise.text(language),
             "hints": [each[language].strip() for each in hints[:count]],
             "allHints": len(hints),
-            "report": None if found is None else _shown_report(exercise, *found, language),
+            "path": fit(str(file), lines=False),
+            "code": code,
+            "line": found[1].mistake.line if found and found[1].mistake and found[2] == code else 0,
+            "report": None if found is None else _shown_report(exercise, *found[:2], language),
         }
 
 
@@ -256,6 +267,16 @@ class _Watcher(PeriodicThread):
         self._watch.look()
         if self._progress.look():
             self._exercises.progress_changed()
+
+
+def code_of(file: Path) -> str | None:
+    """Return the code of a file for the page, lines ended by a line feed; None if it cannot be read or is large."""
+    try:
+        raw = read_plain(file, LARGEST_CODE)
+    except OSError:
+        return None
+    text = raw.decode("utf-8-sig", "replace")
+    return fit(text.replace("\r\n", "\n").replace("\r", "\n"))  # as Python counts lines
 
 
 def _shown_report(exercise: Exercise, number: int, report: Report, language: Language) -> dict[str, Any]:

@@ -82,6 +82,23 @@ def test_the_next_exercise_is_checked_at_once_and_a_save_checks_its_own(tmp_path
         assert (states["walk"], states["stop"], states["react"]) == ("next", "done", "open")
 
 
+def test_the_page_is_told_path_and_code_and_the_line_until_it_changes(tmp_path: Path) -> None:
+    with desk(tmp_path) as made:
+        made.wait_for("learn", checking=None)
+        file = tmp_path / "08_stop.py"
+        file.write_bytes(b"\xef\xbb\xbfx = 1\r\ny = '\x1b[2J\xff'\rf(x)\n")
+        told = made.wait_for("exercise", name="stop")
+        assert told["path"] == str(file)
+        assert told["code"] == "x = 1\ny = '\\x1b[2J\ufffd'\nf(x)\n"
+        assert told["line"] == 3
+        file.write_text("x = 1\n", encoding="utf-8")
+        (shown,) = made.exercises.obey("show", "stop")
+        assert (shown["code"], shown["line"]) == ("x = 1\n", 0)
+        file.unlink()
+        (shown,) = made.exercises.obey("show", "stop")
+        assert (shown["code"], shown["line"]) == (None, 0)
+
+
 def test_a_save_during_a_check_ends_that_check(tmp_path: Path) -> None:
     begun = threading.Event()
 

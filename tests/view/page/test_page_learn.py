@@ -88,7 +88,7 @@ def test_a_student_sees_why_saves_and_goes_on(browser: Browser, tmp_path: Path) 
         browser.press("End")
         browser.wait(f"!{FILM}.changed && {FILM}.at == {FILM}.end")
         assert browser.js(f"{PIXELS}('bad')") > 50, "a cross where it touched the wall"
-        assert browser.js(f"{PIXELS}('accent')") > way + 500, "its path"
+        assert browser.js(f"{PIXELS}('accent')") > way + 200, "its path"
         page.picture("learn_fails")
         browser.click(".learn .row button:nth-child(2)")
         browser.wait("document.querySelector('.tips li')?.innerText.includes('ranges[len(ranges) // 2]')")
@@ -101,6 +101,43 @@ def test_a_student_sees_why_saves_and_goes_on(browser: Browser, tmp_path: Path) 
         page.picture("learn_done")
         browser.click(".learn .row button:last-child")
         browser.wait("document.querySelector('.learn h3').textContent.startsWith('09_react.py')")
+
+
+CODE = "[...document.querySelectorAll('.code span')].map((each) => each.textContent)"
+"""Lines of the code that is shown."""
+FAILED = "[...document.querySelectorAll('.code .failed')].map((each) => each.textContent)"
+
+
+def test_the_page_shows_path_and_code_with_the_line_that_failed(browser: Browser, tmp_path: Path) -> None:
+    def check(exercise: Exercise, file: Path, language: Language, *, stop: threading.Event) -> Report:
+        return Report(mistake=Mistake("exception", "ValueError: no", 42, "raise"), seconds=0.1)
+
+    folder = begun(tmp_path)
+    file = tmp_path / "01_walk.py"
+    given = [*(f"x{i} = {i}" for i in range(40)), HTML, "raise ValueError('no')", *(f"y{i} = {i}" for i in range(40))]
+    file.write_text("\n".join(given), encoding="utf-8")
+    browser.call("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+    with learning(browser, PageExercises(folder, check=check)) as page:
+        browser.wait(f"{FAILED} == \"raise ValueError('no')\\n\"")
+        assert browser.js(CODE) == [f"{line}\n" for line in given]
+        assert browser.js("document.querySelector('.path code').textContent") == str(file)
+        seen = "((rect, box) => rect.top >= box.top && rect.bottom <= box.bottom)"
+        rects = "document.querySelector('.failed').getBoundingClientRect(), document.querySelector('.code')"
+        browser.wait(f"{seen}({rects}.getBoundingClientRect())")  # it is scrolled to
+        page.picture("learn_code")
+        browser.click(".path button")
+        browser.wait(f"document.querySelector('.note')?.textContent == 'copied: {file}'")
+        for width in (900, 560):
+            browser.resize(width, 700)
+            browser.wait(f"document.querySelector('.learn').scrollWidth <= {width} && {CODE}.length == {len(given)}")
+            page.picture(f"learn_code_{width}")
+        browser.resize(1280, 720)
+        file.write_text("print(1)\n", encoding="utf-8")
+        browser.wait(f"{CODE} == 'print(1)\\n'")
+        file.unlink()
+        browser.click(".learn .call")
+        browser.wait("document.querySelector('.code').textContent.startsWith('This file cannot be read.')")
+        assert not browser.js("globalThis.hacked ?? false")
 
 
 def test_by_keyboard_in_portuguese_in_the_dark_and_on_a_phone(browser: Browser, tmp_path: Path) -> None:

@@ -12,6 +12,8 @@ addPairs("learn", {
   sure: ["Reset: sure?", "Reiniciar mesmo?"], onward: ["Next: {file}", "Próximo: {file}"], checking: ["checking…", "testando…"],
   passed: ["done ({seconds} s)", "feito ({seconds} s)"], failed: ["not there yet ({seconds} s)", "ainda não ({seconds} s)"],
   unchecked: ["Save {file} and it is checked.", "Salve {file} e ele é testado."], printed: ["it printed:", "ele imprimiu:"],
+  copy: ["Copy", "Copiar"], copy_title: ["copy the path of your file", "copiar o caminho do seu arquivo"], copied: ["copied: {path}", "copiado: {path}"], code: ["your program", "o seu programa"],
+  missing: ["This file cannot be read. Reset writes it as it was at the beginning.", "Este arquivo não pode ser lido. Reiniciar o grava como era no início."], failed_line: ["here it failed", "aqui falhou"],
   track: ["the robot's path in the check, from above: {seconds} s, contacts: {contacts}", "o caminho do robô no teste, visto de cima: {seconds} s, contatos: {contacts}"],
   play: ["play or pause", "tocar ou pausar"], time: ["time", "tempo"],
 });
@@ -28,7 +30,7 @@ class Learn {
     this.name = last;
     this.film = new Film(app, this.words);
     this.detail = null;
-    if (!document.querySelector("link[href='panels/learn.css']")) document.head.append(h("link", { rel: "stylesheet", href: "panels/learn.css" }));
+    if (!document.querySelector("link[href='panels/learn.css']")) document.head.append(h("link", { rel: "stylesheet", href: "panels/learn.css", onload: () => this._scroll() }));
     this._build(element);
     const { connection } = app;
     this.offs = [connection.on("learn", (state) => this._list(state)), connection.on("exercise", (detail) => this._take(detail)),
@@ -60,9 +62,12 @@ class Learn {
     this.findings = h("ul", { class: "findings", "aria-live": "polite" });
     this.printed = h("pre");
     this.output = h("div", {}, h("p", { class: "dim" }, words("printed")), this.printed);
+    this.path = h("code");
+    this.code = h("pre", { class: "code", tabIndex: 0, "aria-label": words("code") });
+    this.file = h("div", { class: "file" }, h("div", { class: "path" }, this.path, button(words("copy"), words("copy_title"), () => this._copy())), this.code);
     this.task = h("div", { class: "task" }, this.title, this.text, h("div", { class: "row" }, this.check, this.hint, this.reset, this.state, this.onward),
       this.hints, this.findings, this.film.element, this.output);
-    this.body = h("div", { class: "learn", hidden: true }, h("nav", { "aria-label": words("list"), onkeydown: (event) => this._key(event) }, this.heading, this.items), this.task);
+    this.body = h("div", { class: "learn", hidden: true }, h("nav", { "aria-label": words("list"), onkeydown: (event) => this._key(event) }, this.heading, this.items), this.task, this.file);
     element.append(this.none, this.body);
   }
 
@@ -144,9 +149,36 @@ class Learn {
       h("b", { class: mark === "✓" ? "good" : "bad" }, mark), h("span", {}, text), below.length ? h("pre", {}, below.join("\n")) : null)));
     this.output.hidden = !report?.printed.length;
     this.printed.textContent = report?.printed.join("\n") ?? "";
+    this._program(detail);
     if (this.shown !== report?.number) this.film.show(report?.track);
     this.shown = report?.number;
     this._buttons();
+  }
+
+  /** Show path and code of the file, with the line at which the check failed, where it is known. */
+  _program(detail) {
+    this.file.hidden = !detail;
+    const { path, code, line } = detail ?? {}, key = JSON.stringify([path, code, line]);
+    if (this.program === key) return; // so that a place to which somebody scrolled stays
+    this.program = key;
+    this.path.textContent = path ?? "";
+    const { scrollTop } = this.code, isSame = this.code.dataset.name === detail?.name, lines = (code ?? "").replace(/\n$/, "").split("\n");
+    const isGone = detail && typeof code !== "string";
+    this.code.replaceChildren(...(isGone ? [this.words("missing")] : lines.map((text, i) => h("span", i + 1 === line ? { class: "failed", title: this.words("failed_line") } : {}, `${text}\n`))));
+    this.code.dataset.name = detail?.name;
+    this.code.scrollTop = isSame ? scrollTop : 0;
+    this._scroll();
+  }
+
+  /** Bring the line that failed into sight, within the code alone. */
+  _scroll() {
+    const failed = this.code.querySelector(".failed");
+    if (failed) this.code.scrollTop = failed.offsetTop - this.code.offsetTop - this.code.clientHeight / 3;
+  }
+
+  _copy() {
+    const { path } = this.detail;
+    navigator.clipboard?.writeText(path).then(() => this.app.tell(this.words("copied", { path }))).catch(() => {});
   }
 
   _buttons() {
