@@ -77,7 +77,7 @@ export class Stop {
   /** Button of the header. */
   button() {
     const { words } = this.app;
-    this.stop = button(words("stop.press"), words("stop.title"), () => this.press(), { id: "stop" });
+    this.stop = button(words("stop.press"), words("stop.title"), () => this.press(), { id: "stop", onpointerdown: () => this.press() }); // not when the finger leaves it
     this.show();
     return this.stop;
   }

@@ -88,6 +88,15 @@ def test_a_double_click_and_space_release_nothing_and_enter_does(browser: Browse
         browser.wait(RELEASED)
 
 
+def test_stop_is_pressed_when_the_finger_comes_down(browser: Browser) -> None:
+    with opened(browser, "topics"):
+        x, y = browser.place("#stop")
+        browser.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, button="left", buttons=1, clickCount=1)
+        browser.wait(HELD)
+        browser.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y + 200, button="left", clickCount=1)
+        assert browser.js(HELD)
+
+
 def test_space_stops_wherever_the_mouse_has_left_the_keyboard(browser: Browser) -> None:
     with opened(browser, "world"):
         browser.click("#theme")
