@@ -6,7 +6,7 @@
 
 import { compose, inverse, poseOf, rotate, yawOf } from "../tf.js";
 import { Markers } from "./world_markers.js";
-import { faint, pixel } from "./world_pixels.js";
+import { faint, pixel, shown } from "./world_pixels.js";
 import { around } from "./world_view.js";
 
 const MOST_POINTS = 120_000;
@@ -45,69 +45,56 @@ class Layer {
 class Scan extends Layer {
   update(message, scene) {
     super.update(message);
-    this.pose = null;
-    this.place(scene);
+    this._place(scene);
   }
 
-  place(scene) { // a scan stays where it was measured while its robot drives on
-    const found = scene.known(this.message.header.frame_id);
-    if (found) this.turn = seen(this.pose = found);
-    else this.turn = seen(scene.pose(this.message.header.frame_id));
+  /** Where the beams end, in the fixed frame; NaN for those that end nowhere. A scan stays where it was measured while its robot drives on. */
+  _place(scene) {
+    const { ranges, header, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
+    this.pose = scene.known(header.frame_id);
+    const [px, py, xx, xy, yx, yy] = seen(this.pose ?? scene.pose(header.frame_id)), ends = this.ends = new Float32Array(2 * ranges.length);
+    this.from = { x: px, y: py };
+    ranges.forEach((range, i) => {
+      const far = range >= least && range <= most ? range : NaN, cos = far * Math.cos(start + i * step), sin = far * Math.sin(start + i * step);
+      ends[2 * i] = px + cos * xx + sin * yx;
+      ends[2 * i + 1] = py + cos * xy + sin * yy;
+    });
   }
 
   pixels(scene) {
-    if (!this.pose) this.place(scene);
-    if (scene.many) scene.pixels.beams(this.message, this.turn, this.pixel);
+    if (!this.pose) this._place(scene);
+    if (scene.many) scene.pixels.fan(this.from, this.ends, this.pixel);
   }
 
   /** Draw what the beams sweep, some of them, and where they end. */
-  draw(context, scene) {
-    if (scene.many) return;
-    const { view } = scene, unit = view.ratio, ends = this._ends(), x = view.toX(this.turn[0]), y = view.toY(this.turn[1]);
-    const places = ends.map((end) => end && [view.toX(end[0]), view.toY(end[1])]), every = Math.ceil(ends.length / SHOWN_BEAMS);
-    context.fillStyle = context.strokeStyle = faint(this.colour, 0.06);
+  draw(context, { view, many, colours }) {
+    if (many) return;
+    const from = [view.toX(this.from.x), view.toY(this.from.y)], places = [], every = Math.ceil(this.ends.length / 2 / SHOWN_BEAMS);
+    for (let i = 0; i < this.ends.length; i += 2) places.push(this.ends[i] === this.ends[i] ? [view.toX(this.ends[i]), view.toY(this.ends[i + 1])] : null);
+    context.fillStyle = faint(this.colour, 0.06);
     context.beginPath();
-    context.moveTo(x, y);
-    for (const place of places) context.lineTo(...(place ?? [x, y]));
+    context.moveTo(...from);
+    for (const place of places) context.lineTo(...(place ?? from));
     context.fill();
     context.strokeStyle = faint(this.colour, 0.18);
-    context.lineWidth = unit;
+    context.lineWidth = view.ratio;
     context.beginPath();
-    places.forEach((place, i) => {
-      if (!place || i % every) return;
-      context.moveTo(x, y);
+    for (const place of places.filter((each, i) => each && i % every === 0)) {
+      context.moveTo(...from);
       context.lineTo(...place);
-    });
-    context.stroke();
-    dots(context, places, scene.colours.halo, this.colour, unit);
-  }
-
-  /** Where the beams end, in metres; null for those that end nowhere. */
-  _ends(every = 1) {
-    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
-    const [px, py, xx, xy, yx, yy] = this.turn, ends = [];
-    for (let i = 0; i < ranges.length; i += every) {
-      const range = ranges[i], cos = range * Math.cos(start + i * step), sin = range * Math.sin(start + i * step);
-      ends.push(range >= least && range <= most ? [px + cos * xx + sin * yx, py + cos * xy + sin * yy] : null);
     }
-    return ends;
+    context.stroke();
+    dots(context, places.filter(Boolean), colours.halo, this.colour, view.ratio);
   }
 
-  bounds() {
-    const ends = this._ends(Math.ceil(this.message.ranges.length / 45)); // enough to fit the view
-    return around([[this.turn[0], this.turn[1]], ...ends.filter(Boolean)].map(([x, y]) => ({ x, y })));
+  bounds() { // enough ends to fit the view
+    const every = Math.ceil(this.ends.length / 90);
+    return around([this.from, ...Array.from({ length: 45 }, (_, i) => ({ x: this.ends[2 * i * every], y: this.ends[2 * i * every + 1] }))]);
   }
 
   hover(x, y, reach) {
-    const { ranges, angle_min: start, angle_increment: step, range_min: least, range_max: most } = this.message;
-    const [px, py, xx, xy, yx, yy] = this.turn;
-    for (let i = 0; i < ranges.length; i++) {
-      const range = ranges[i];
-      if (!(range >= least && range <= most)) continue;
-      const cos = Math.cos(start + i * step), sin = Math.sin(start + i * step);
-      if (Math.hypot(px + range * (cos * xx + sin * yx) - x, py + range * (cos * xy + sin * yy) - y) < reach) return `${range.toFixed(3)} m (${i})`;
-    }
-    return null;
+    const i = this.message.ranges.findIndex((_, k) => Math.hypot(this.ends[2 * k] - x, this.ends[2 * k + 1] - y) < reach);
+    return i < 0 ? null : `${this.message.ranges[i].toFixed(3)} m (${i})`;
   }
 }
 
@@ -119,16 +106,18 @@ class Cloud extends Layer {
     const { count, at, tint } = read;
     this.count = count;
     this.places = new Float32Array(2 * count);
-    this.colours = new Uint32Array(count);
+    this.tints = new Uint32Array(count);
     for (let i = 0; i < count; i++) {
       const [x, y, z] = at(i), p = rotate(pose, x, y, z);
       this.places[2 * i] = pose.x + p[0];
       this.places[2 * i + 1] = pose.y + p[1];
-      this.colours[i] = tint?.(i) ?? byHeight(pose.z + p[2]);
+      this.tints[i] = tint?.(i) ?? byHeight(pose.z + p[2]);
     }
   }
 
-  pixels(scene) { scene.pixels.points(this.places, this.count, this.colours); }
+  get colours() { return [0, 1, 2].map((z) => shown(byHeight(z))); }
+
+  pixels(scene) { scene.pixels.points(this.places, this.count, this.tints); }
 
   hover(x, y, reach) {
     for (let i = 0; i < this.count; i++) {
@@ -176,6 +165,7 @@ class Grid extends Layer {
     const colours = /costmap/.test(this.topic.name) ? scene.costs : scene.occupancy, pixels = new Uint32Array(image.data.buffer), { data } = message;
     for (let i = 0; i < data.length; i++) pixels[i] = colours[data[i] & 0xff];
     context.putImageData(image, 0, 0);
+    this.colours = (colours === scene.costs ? [20, 60, 99, 100] : [0, 50, 100]).map((value) => shown(colours[value]));
     scene.groundChanged = true;
   }
 
@@ -363,12 +353,9 @@ class Sight extends Layer {
       const side = (column / k[0]) * SIGHT, p = isOptical ? rotate(pose, side, 0, SIGHT) : rotate(pose, SIGHT, -side, 0);
       return [view.toX(pose.x + p[0]), view.toY(pose.y + p[1])];
     });
-    const fill = context.createRadialGradient(x, y, 0, x, y, Math.hypot(left[0] - x, left[1] - y) || 1);
-    fill.addColorStop(0, faint(this.colour, 0.4));
-    fill.addColorStop(1, faint(this.colour, 0.12));
     context.beginPath();
     for (const corner of [left, [x, y], right]) context.lineTo(...corner);
-    context.fillStyle = fill;
+    context.fillStyle = faint(this.colour, 0.22);
     context.fill();
     context.strokeStyle = faint(this.colour, 0.8);
     context.lineWidth = view.ratio;
@@ -407,7 +394,7 @@ export function dots(context, places, halo, colour, unit) {
   for (const [style, size] of [[faint(halo, 0.5), 5], [colour, 3]]) {
     const far = Math.floor((size * unit) / 2), side = Math.round(size * unit);
     context.fillStyle = style;
-    for (const place of places) if (place) context.fillRect(Math.round(place[0]) - far, Math.round(place[1]) - far, side, side);
+    for (const place of places) context.fillRect(Math.round(place[0]) - far, Math.round(place[1]) - far, side, side);
   }
 }
 
@@ -426,18 +413,18 @@ export function arrow(context, x, y, yaw, length) {
 export function degrees(angle) { return `${((angle * 180) / Math.PI).toFixed(0)}°`; }
 
 /**
- * Class of layer by type; `rate` is how often at most messages are needed (Hz), `form` how it looks in the list, and
- * `role` its colour in the palette where a system has one robot.
+ * Class of layer by type; `rate` is how often at most messages are needed (Hz), `form` how it looks in the list if it has no
+ * `colours`, and `role` its colour in the palette where a system has one robot.
  */
 export const KINDS = {
-  "nav_msgs/msg/OccupancyGrid": { make: Grid, rate: 2, order: 0, form: "cells" },
+  "nav_msgs/msg/OccupancyGrid": { make: Grid, rate: 2, order: 0 },
   "sensor_msgs/msg/LaserScan": { make: Scan, rate: 0, order: 1, form: "beams", role: "scan" },
-  "sensor_msgs/msg/PointCloud2": { make: Cloud, rate: 10, order: 1, form: "heights" },
-  "sensor_msgs/msg/PointCloud": { make: Cloud, rate: 10, order: 1, form: "heights" },
+  "sensor_msgs/msg/PointCloud2": { make: Cloud, rate: 10, order: 1 },
+  "sensor_msgs/msg/PointCloud": { make: Cloud, rate: 10, order: 1 },
   "sensor_msgs/msg/CameraInfo": { make: Sight, rate: 2, order: 1, form: "area", role: "camera" },
   "sensor_msgs/msg/Range": { make: Cone, rate: 20, order: 2, form: "area" },
-  "visualization_msgs/msg/Marker": { make: Markers, rate: 0, order: 3, every: true, form: "marks" },
-  "visualization_msgs/msg/MarkerArray": { make: Markers, rate: 0, order: 3, every: true, form: "marks" },
+  "visualization_msgs/msg/Marker": { make: Markers, rate: 0, order: 3, every: true },
+  "visualization_msgs/msg/MarkerArray": { make: Markers, rate: 0, order: 3, every: true },
   "nav_msgs/msg/Odometry": { make: Odometry, rate: 0, order: 4, form: "line", role: "trail" },
   "nav_msgs/msg/Path": { make: Outline, rate: 10, order: 6, form: "line", role: "path" },
   "geometry_msgs/msg/PolygonStamped": { make: Outline, rate: 20, order: 6, form: "area" },

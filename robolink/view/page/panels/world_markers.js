@@ -4,13 +4,13 @@
 // node names them: "floor" and "paint" lie below maps, "signs" are shown as pictures, "robots" are drawn with their heading.
 
 import { compose, poseOf, rotate } from "../tf.js";
-import { css, picture, sign } from "./world_pictures.js";
 import { around } from "./world_view.js";
 
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, TEXT, MESH, TRIANGLES] = Array(12).keys();
 const DELETE = 2, DELETE_ALL = 3;
 const REST = 1000; // ms without a message after which a topic's markers rest
 const SHADOW = "rgba(0,0,0,0.28)", EDGE = "rgba(0,0,0,0.4)";
+const MOST_PIXELS = 2048, LEAST_SIGN = 26; // pixels of a picture's side, and of a sign on the screen
 const FLOOR = /^(floor|paint)$/, UPRIGHT = "wall_faces"; // seen from above, upright faces are nothing
 
 export class Markers {
@@ -111,9 +111,9 @@ export function trace(context, { type, scale, points }, at) {
   else loop(context, corners.map(at));
 }
 
-/** Radius of a solid marker, in metres. */
-export function radiusOf({ scale, points }) {
-  return points.length ? Math.max(...points.map(({ x, y }) => Math.hypot(x, y))) : Math.min(scale.x, scale.y) / 2;
+/** Half of a solid marker's length and width, in metres. */
+export function halves({ scale, points }) {
+  return ["x", "y"].map((axis) => (points.length ? most(points.map((each) => each[axis])) - least(points.map((each) => each[axis])) : scale[axis]) / 2);
 }
 
 function shape(context, scene, item, pose) {
@@ -173,9 +173,10 @@ function loop(context, corners) {
   context.closePath();
 }
 
-function filled(context, marker, at) {
+function filled(context, marker, at, edge) {
   context.beginPath();
   trace(context, marker, at);
+  if (edge) context.stroke();
   context.fill();
 }
 
@@ -186,15 +187,8 @@ function solid(context, marker, at, unit) {
   filled(context, marker, (point) => { const [x, y] = at(point); return [x + 2 * unit, y + 3 * unit]; });
   context.strokeStyle = EDGE;
   context.lineWidth = 1.5 * unit;
-  context.stroke(tracedPath(marker, at));
   context.fillStyle = fillStyle;
-  filled(context, marker, at);
-}
-
-function tracedPath(marker, at) {
-  const path = new Path2D();
-  trace(path, marker, at);
-  return path;
+  filled(context, marker, at, true);
 }
 
 /** Draw triangles of several colours that lie flat, as a picture that is made once. */
@@ -210,17 +204,15 @@ function flat(context, { view }, item, pose) {
 
 /** Draw lines between places: each pair (`step` 2), or joined (1); in one path, or each in its own colour. */
 function lines(context, places, tint, step, coloured) {
-  if (!coloured) context.beginPath();
   for (let i = 0; i + 1 < places.length; i += step) {
-    if (coloured) {
+    if (coloured || !i) {
       context.strokeStyle = tint(i);
       context.beginPath();
     }
-    if (coloured || step === 2 || i === 0) context.moveTo(...places[i]);
+    if (coloured || step > 1 || !i) context.moveTo(...places[i]);
     context.lineTo(...places[i + 1]);
-    if (coloured) context.stroke();
+    if (coloured || i + step + 1 >= places.length) context.stroke();
   }
-  if (!coloured) context.stroke();
 }
 
 function pointed(context, [x, y], [ex, ey], width) {
@@ -235,3 +227,58 @@ function pointed(context, [x, y], [ex, ey], width) {
   context.fill();
 }
 
+/** Colour of a std_msgs/ColorRGBA. */
+function css({ r, g, b, a }) { return `rgba(${Math.round(255 * r)},${Math.round(255 * g)},${Math.round(255 * b)},${a})`; }
+
+/**
+ * Picture of a marker's triangles in the plane of two of its axes, `u` to the right and `v` up: {canvas, left, top, step}
+ * with its upper left corner and the side of a pixel, in metres. Edges are where the pixels' are, where there are few enough.
+ */
+function picture({ points, colors, color }, u, v) {
+  const us = points.map((each) => each[u]), vs = points.map((each) => each[v]), left = least(us), top = most(vs);
+  const wide = most(us) - left, high = top - least(vs), longest = Math.max(wide, high) || 1;
+  const step = Math.max(longest / MOST_PIXELS, Math.min(longest / 64, finest(us, longest), finest(vs, longest)));
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+  canvas.width = Math.max(1, Math.round(wide / step));
+  canvas.height = Math.max(1, Math.round(high / step));
+  for (let i = 0; i + 2 < points.length; i += 3) {
+    context.fillStyle = context.strokeStyle = css(colors[i] ?? color);
+    context.lineWidth = 0.5; // or two triangles of one rectangle would have a seam
+    context.beginPath();
+    for (let k = i; k < i + 3; k++) context.lineTo((us[k] - left) / step, (top - vs[k]) / step);
+    context.closePath();
+    context.fill();
+    context.stroke();
+  }
+  return { canvas, left, top, step };
+}
+
+const least = (values) => values.reduce((a, b) => Math.min(a, b), Infinity), most = (values) => -least(values.map((each) => -each));
+
+/** Smallest distance of two values that differ. */
+function finest(values, longest) {
+  const sorted = [...new Set(values)].sort((a, b) => a - b);
+  return sorted.reduce((found, each, i) => (i && each - sorted[i - 1] > longest / MOST_PIXELS ? Math.min(found, each - sorted[i - 1]) : found), longest);
+}
+
+/** Draw a sign's plate from above, and its picture before it, facing who looks. */
+function sign(context, { view, colours }, item, at) {
+  const { canvas, step } = (item.picture ??= picture(item.marker, "y", "z")), unit = view.ratio;
+  const ys = item.marker.points.map(({ y }) => y), low = least(ys), high = most(ys);
+  const [x, y] = at({ x: 0, y: 0, z: 0 }), [fx, fy] = at({ x: 1, y: 0, z: 0 }), far = Math.hypot(fx - x, fy - y) || 1;
+  const height = Math.max(LEAST_SIGN * unit, canvas.height * step * view.scale), width = (height * canvas.width) / canvas.height;
+  const ahead = Math.max(height, width) / 2 + 5 * unit, px = x + ((fx - x) / far) * ahead, py = y + ((fy - y) / far) * ahead;
+  context.lineCap = "butt";
+  for (const [colour, wide] of [[colours.halo, 6], [colours.text, 3]]) {
+    context.strokeStyle = colour;
+    context.lineWidth = wide * unit;
+    context.beginPath();
+    context.moveTo(...at({ x: 0, y: low, z: 0 }));
+    context.lineTo(...at({ x: 0, y: high, z: 0 }));
+    context.stroke();
+  }
+  context.fillStyle = colours.halo;
+  context.fillRect(px - width / 2 - unit, py - height / 2 - unit, width + 2 * unit, height + 2 * unit);
+  context.imageSmoothingQuality = "high";
+  context.drawImage(canvas, px - width / 2, py - height / 2, width, height);
+}

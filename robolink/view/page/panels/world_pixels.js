@@ -9,6 +9,9 @@ export function pixel(colour) {
   return (0xff000000 | ((value & 0xff) << 16) | (value & 0xff00) | (value >> 16)) >>> 0;
 }
 
+/** The same pixel as a colour of the style sheet. */
+export function shown(value) { return `rgba(${value & 255},${(value >> 8) & 255},${(value >> 16) & 255},${(value >>> 24) / 255})`; }
+
 /** Colour "#rrggbb", translucent. */
 export function faint(colour, alpha) { return `${colour}${Math.round(alpha * 255).toString(16).padStart(2, "0")}`; }
 
@@ -39,38 +42,23 @@ export class Pixels {
 
   begin() { this.pixels.set(this.ground); }
 
-  /** Draw a sequence of points [x0, y0, x1, y1 ...] in metres; with a colour for each. */
+  /** Draw a sequence of points [x0, y0, x1, y1 ...] in metres, with a colour for each or one for all; NaN is nowhere. */
   points(places, count, colours) {
     const { view, width, height, pixels } = this, { scale } = view;
     const left = width / 2 - view.x * scale, top = height / 2 + view.y * scale;
     for (let i = 0; i < count; i++) {
       const x = (left + places[2 * i] * scale) | 0, y = (top - places[2 * i + 1] * scale) | 0;
       if (x < 1 || y < 1 || x >= width || y >= height) continue;
-      const at = y * width + x, colour = colours[i];
-      pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colour;
+      const at = y * width + x;
+      pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colours[i] ?? colours;
     }
   }
 
-  /** Draw the ends of a scan's beams, and some beams. `turn` is [x, y, xx, xy, yx, yy]: the sensor's place and its axes. */
-  beams(scan, [px, py, xx, xy, yx, yy], colour) {
-    const { view, width, height, pixels } = this, { scale } = view, { ranges, range_min: least, range_max: most } = scan;
-    const left = width / 2 + (px - view.x) * scale, top = height / 2 - (py - view.y) * scale, every = Math.ceil(ranges.length / BEAMS);
-    const stepCos = Math.cos(scan.angle_increment), stepSin = Math.sin(scan.angle_increment);
-    let cos = Math.cos(scan.angle_min), sin = Math.sin(scan.angle_min);
-    for (let i = 0; i < ranges.length; i++) {
-      const range = ranges[i];
-      if (range >= least && range <= most) {
-        const far = range * scale, dx = far * (cos * xx + sin * yx), dy = -far * (cos * xy + sin * yy), x = (left + dx) | 0, y = (top + dy) | 0;
-        if (i % every === 0) this._beam(left, top, dx, dy, colour);
-        if (x > 0 && y > 0 && x < width && y < height) {
-          const at = y * width + x;
-          pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colour;
-        }
-      }
-      const next = cos * stepCos - sin * stepSin;
-      sin = sin * stepCos + cos * stepSin;
-      cos = next;
-    }
+  /** Draw the ends of beams from a place, and some beams. */
+  fan({ x, y }, ends, colour) {
+    const { view } = this, every = 2 * Math.ceil(ends.length / 2 / BEAMS), left = view.toX(x), top = view.toY(y);
+    for (let i = 0; i < ends.length; i += every) this._beam(left, top, (ends[i] - x) * view.scale, (y - ends[i + 1]) * view.scale, colour);
+    this.points(ends, ends.length / 2, colour);
   }
 
   /** Blend an eighth of a colour into the pixels of a line: four colours at once, which stay within their bytes. */

@@ -1,7 +1,7 @@
 // Robots of the world panel: which there are, and their bodies with the way they look, seen on any floor.
 
 import { compose, poseOf, yawOf } from "../tf.js";
-import { radiusOf, trace } from "./world_markers.js";
+import { halves, trace } from "./world_markers.js";
 
 const ROBOT = /(^|\/)(base_link|base_footprint)$/;
 const BODY = 0.15; // metres: radius of a robot whose shape nobody publishes
@@ -25,7 +25,7 @@ export function robotsOf(scene) {
 }
 
 /** Radius of a robot's body, in metres. */
-export function reachOf({ body }) { return body ? radiusOf(body.marker) : BODY; }
+export function reachOf({ body }) { return body ? Math.max(...halves(body.marker)) : BODY; }
 
 /** Draw robots, each with its body: a marker's shape, or a disc. */
 export function drawRobots(context, scene, robots) {
@@ -60,8 +60,8 @@ function stamp(scene, robot, radius) {
 }
 
 /** Draw a robot at the origin, looking to the right: a ring in its colour, its body, and an arrow. */
-function paint(context, { view, colours }, { body, colour }, radius) {
-  const unit = view.ratio, real = body ? radiusOf(body.marker) * view.scale : 0, scale = body ? view.scale * Math.max(1, radius / (real || 1)) : 0;
+function paint(context, { view, colours }, robot, radius) {
+  const unit = view.ratio, { body, colour } = robot, scale = radius / reachOf(robot);
   context.beginPath();
   if (body) trace(context, body.marker, ({ x, y }) => [x * scale, -y * scale]);
   else context.arc(0, 0, radius, 0, 2 * Math.PI);
@@ -73,7 +73,7 @@ function paint(context, { view, colours }, { body, colour }, radius) {
   }
   context.fillStyle = body?.fill ?? colours.robot;
   context.fill();
-  const nose = Math.max(body?.marker.type === 3 || !body ? 0.72 * radius : 0.8 * Math.min(radius, nearest(body.marker) * scale), 4 * unit);
+  const nose = Math.max(0.72 * (body ? scale * Math.min(...halves(body.marker)) : radius), 4 * unit);
   context.beginPath();
   for (const [x, y] of [[1, 0], [-0.6, 0.75], [-0.25, 0], [-0.6, -0.75]]) context.lineTo(x * nose, y * nose);
   context.closePath();
@@ -82,11 +82,4 @@ function paint(context, { view, colours }, { body, colour }, radius) {
   context.stroke();
   context.fillStyle = NOSE;
   context.fill();
-}
-
-/** Half of the least width of a body, in metres. */
-function nearest({ scale, points }) {
-  if (!points.length) return Math.min(scale.x, scale.y) / 2;
-  const half = (values) => (Math.max(...values) - Math.min(...values)) / 2;
-  return Math.min(half(points.map(({ x }) => x)), half(points.map(({ y }) => y)));
 }

@@ -52,7 +52,7 @@ export class Scene {
     const entries = [...this.layers].sort(([a], [b]) => (a < b ? -1 : 1)), used = new Set();
     const spaces = entries.filter(([, { topic }]) => topic.type === "nav_msgs/msg/Odometry").map(([name]) => name.slice(0, name.lastIndexOf("/") + 1));
     this.spaces = [...new Set(spaces)];
-    let next = 0;
+    let next = 1; // the first one is like that of trails
     for (const [name, { layer, kind: { role } }] of entries) {
       const own = this.spaces.length > 1 && this.spaceColour(name);
       const isFirst = role && !used.has(role) && !QUIET.test(name);
