@@ -1,9 +1,10 @@
-// Markers of visualization_msgs seen from above: Marker and MarkerArray, with their lifetimes and deletions.
+// Markers of visualization_msgs seen from above: Marker and MarkerArray, with their lifetimes and deletions; and robots, whose
+// bodies are such markers.
 //
 // What rests in the fixed frame is part of the ground, which is drawn only when it changes. By their `ns`, as the world
 // node names them: "floor" and "paint" lie below maps, "signs" are shown as pictures, "robots" are drawn with their heading.
 
-import { compose, poseOf, rotate } from "../tf.js";
+import { compose, poseOf, rotate, yawOf } from "../tf.js";
 import { around } from "./world_view.js";
 
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, TEXT, MESH, TRIANGLES] = Array(12).keys();
@@ -12,6 +13,10 @@ const REST = 1000; // ms without a message after which a topic's markers rest
 const SHADOW = "rgba(0,0,0,0.28)", EDGE = "rgba(0,0,0,0.4)";
 const MOST_PIXELS = 2048, LEAST_SIGN = 26; // pixels of a picture's side, and of a sign on the screen
 const FLOOR = /^(floor|paint)$/, UPRIGHT = "wall_faces"; // seen from above, upright faces are nothing
+const ROBOT = /(^|\/)(base_link|base_footprint)$/;
+const BODY = 0.15; // metres: radius of a robot whose shape nobody publishes
+const CASE = "rgba(0,0,0,0.6)", NOSE = "#fff";
+const LARGE = 60; // pixels of a radius above which a robot is drawn anew, and not as a picture that is turned
 
 export class Markers {
   constructor(topic) {
@@ -69,7 +74,7 @@ export class Markers {
 
   /** Markers of robots by the frames that they are in. */
   bodies(scene) {
-    for (const item of this.shown.values()) if (item.marker.ns === "robots") scene.bodies.set(item.marker.header.frame_id, item);
+    for (const item of this.shown.values()) if (item.marker.ns === "robots") scene.bodies.set(item.marker.header.frame_id.replace(/^\//, ""), item);
   }
 
   _each(context, scene, wanted) {
@@ -105,14 +110,14 @@ export class Markers {
 }
 
 /** Add the outline of a solid marker to a path; `at` gives the pixels of a point {x, y, z} of the marker. */
-export function trace(context, { type, scale, points }, at) {
+function trace(context, { type, scale, points }, at) {
   const corners = type === CYLINDER || type === SPHERE ? round(scale) : type === TRIANGLES || type === LINE_STRIP ? points : box(scale);
   if (type === TRIANGLES) for (let i = 0; i + 2 < corners.length; i += 3) loop(context, corners.slice(i, i + 3).map(at));
   else loop(context, corners.map(at));
 }
 
 /** Half of a solid marker's length and width, in metres. */
-export function halves({ scale, points }) {
+function halves({ scale, points }) {
   return ["x", "y"].map((axis) => (points.length ? most(points.map((each) => each[axis])) - least(points.map((each) => each[axis])) : scale[axis]) / 2);
 }
 
@@ -281,4 +286,80 @@ function sign(context, { view, colours }, item, at) {
   context.fillRect(px - width / 2 - unit, py - height / 2 - unit, width + 2 * unit, height + 2 * unit);
   context.imageSmoothingQuality = "high";
   context.drawImage(canvas, px - width / 2, py - height / 2, width, height);
+}
+
+/** Robots: frames named base_link or base_footprint, and odometry whose frame tf does not know: [{name, frame, pose}]. */
+export function robotsOf(scene) {
+  const found = new Map(), { frames } = scene;
+  for (const frame of frames.nodes.keys()) {
+    if (!ROBOT.test(frame)) continue;
+    const name = frame.replace(ROBOT, "") || "robot";
+    if (!found.has(name) || frame.endsWith("base_link")) found.set(name, { name, frame, pose: scene.pose(frame) });
+  }
+  for (const [child, { message, topic }] of scene.odometry) {
+    if (frames.nodes.has(child) || !topic.channel) continue;
+    const name = child.replace(ROBOT, "") || topic.name.replace(/^\/|\/[^/]*$/g, "") || "robot";
+    if (!found.has(name)) found.set(name, { name, frame: child, pose: compose(scene.pose(message.header.frame_id), poseOf(message.pose.pose)) });
+  }
+  return [...found.values()];
+}
+
+/** Radius of a robot's body, in metres. */
+export function reachOf({ body }) { return body ? Math.max(...halves(body.marker)) : BODY; }
+
+/** Draw robots, each with its body: a marker's shape, or a disc. */
+export function drawRobots(context, scene, robots) {
+  const { view } = scene, unit = view.ratio;
+  for (const robot of robots) {
+    const radius = Math.max(reachOf(robot) * view.scale, 5 * unit);
+    context.save();
+    context.translate(view.toX(robot.pose.x), view.toY(robot.pose.y));
+    context.rotate(-yawOf(robot.pose));
+    if (radius > LARGE * unit || robots.length === 1) paint(context, scene, robot, radius);
+    else {
+      const picture = stamp(scene, robot, radius);
+      context.drawImage(picture, -picture.width / 2, -picture.height / 2);
+    }
+    context.restore();
+  }
+}
+
+/** Picture of a robot that looks to the right: one for all that look the same. */
+function stamp(scene, robot, radius) {
+  const { body, colour } = robot, key = `${radius.toFixed(1)} ${colour} ${body?.fill} ${body?.marker.type} ${Object.values(body?.marker.scale ?? {})} ${body?.marker.points.length}`;
+  if (scene.stamps.size > 200) scene.stamps.clear();
+  if (!scene.stamps.has(key)) {
+    const canvas = document.createElement("canvas"), size = 2 * Math.ceil(1.5 * radius + 5 * scene.view.ratio);
+    canvas.width = canvas.height = size;
+    const context = canvas.getContext("2d");
+    context.translate(size / 2, size / 2);
+    paint(context, scene, robot, radius);
+    scene.stamps.set(key, canvas);
+  }
+  return scene.stamps.get(key);
+}
+
+/** Draw a robot at the origin, looking to the right: a ring in its colour, its body, and an arrow. */
+function paint(context, { view, colours }, robot, radius) {
+  const unit = view.ratio, { body, colour } = robot, scale = radius / reachOf(robot);
+  context.beginPath();
+  if (body) trace(context, body.marker, ({ x, y, z }) => { const p = rotate(body.place, x, y, z); return [(body.place.x + p[0]) * scale, -(body.place.y + p[1]) * scale]; });
+  else context.arc(0, 0, radius, 0, 2 * Math.PI);
+  context.lineJoin = "round";
+  for (const [style, width] of [[CASE, 5], [colour, 3]]) { // what lies within is covered by the body
+    context.strokeStyle = style;
+    context.lineWidth = width * unit;
+    context.stroke();
+  }
+  context.fillStyle = body?.fill ?? colours.robot;
+  context.fill();
+  const nose = Math.max(0.72 * (body ? scale * Math.min(...halves(body.marker)) : radius), 4 * unit);
+  context.beginPath();
+  for (const [x, y] of [[1, 0], [-0.6, 0.75], [-0.25, 0], [-0.6, -0.75]]) context.lineTo(x * nose, y * nose);
+  context.closePath();
+  context.strokeStyle = CASE;
+  context.lineWidth = 2 * unit;
+  context.stroke();
+  context.fillStyle = NOSE;
+  context.fill();
 }

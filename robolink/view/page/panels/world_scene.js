@@ -3,7 +3,7 @@
 import { yawOf, IDENTITY } from "../tf.js";
 import { degrees, goal, KINDS } from "./world_layers.js";
 import { Pixels, pixel } from "./world_pixels.js";
-import { drawRobots, reachOf, robotsOf } from "./world_robots.js";
+import { drawRobots, reachOf, robotsOf } from "./world_markers.js";
 import { around } from "./world_view.js";
 
 const ROBOTS = 5; // between the orders of layers: robots are drawn here
