@@ -5,7 +5,7 @@ import { addPairs } from "../words.js";
 import { arrange, HEIGHT } from "./graph_layout.js";
 
 addPairs("graph", {
-  filter: ["filter", "filtrar"], quiet: ["hide /rosout and such", "ocultar /rosout e outros"], fit: ["fit", "tudo"], in: ["zoom in (+)", "aproximar (+)"], out: ["zoom out (-)", "afastar (-)"],
+  filter: ["filter", "filtrar"], quiet: ["hide /rosout and such", "ocultar /rosout e outros"], fit: ["fit", "tudo"],
   none: ["No node runs in domain {domain}. Start one, such as: robolink launch wander", "Nenhum node em execução no domínio {domain}. Inicie um, por exemplo: robolink launch wander"],
   unmatched: ["no name has '{filter}' in it", "nenhum nome contém '{filter}'"],
   bag: ["A bag tells what was sent, but not which nodes sent it: there is no graph of it. The panel Topics lists its topics.", "Um bag diz o que foi enviado, mas não quais nodes enviaram: não há grafo dele. O painel Topics lista os seus topics."],
@@ -51,7 +51,7 @@ class Graph {
     this.hint = h("p", { class: "empty" });
     this.detail = h("div", { class: "ends padded", role: "status", hidden: true });
     this.element.append(h("div", { class: "row" }, search, h("label", {}, quiet, " ", words("graph.quiet")),
-      button("+", words("graph.in"), () => this._zoom(0.8)), button("−", words("graph.out"), () => this._zoom(1.25)), button(words("graph.fit"), null, () => this._look(this.view = this.all))),
+      button("+", words("world.zoomin"), () => this._zoom(0.8)), button("−", words("world.zoomout"), () => this._zoom(1.25)), button(words("graph.fit"), null, () => this._look(this.view = this.all))),
     this.hint, this.picture, this.detail);
     this._pointers();
   }
@@ -92,23 +92,29 @@ class Graph {
   }
 
   _draw(items) {
-    const { app, app: { words } } = this, { edges, left, right, top, bottom } = arrange(items);
+    const { app, app: { words } } = this, edges = arrange(items);
     const arrow = (name) => svg("marker", { id: name, class: name === this.name ? "" : "chosen", viewBox: "0 0 10 10", refX: 10, refY: 5, markerWidth: 9, markerHeight: 9, markerUnits: "userSpaceOnUse", orient: "auto" }, svg("path", { d: "M0 0L10 5L0 10z" }));
     this.paths = edges.map(({ from, to, path }) => ({ from, to, element: svg("path", { class: "edge", d: path, "marker-end": `url(#${this.name})`, "data-from": from.key, "data-to": to.key }) }));
     this.picture.replaceChildren(svg("defs", {}, arrow(this.name), arrow(`${this.name}chosen`)), ...this.paths.map(({ element }) => element), ...items.map((each) => this._box(each)));
     this.hint.hidden = items.length > 0;
     this.picture.style.display = items.length ? "" : "none";
     this.hint.textContent = app.isBag ? words("graph.bag") : this.filter ? words("graph.unmatched", { filter: this.filter }) : words("graph.none", { domain: app.connection.info?.robolink?.domain ?? "" });
-    this.all = items.length ? [left - 8, top - 8, right - left + 16, bottom - top + 16] : [0, 0, 1, 1];
     if (this.view) this._look(this.view);
     else this._open();
     this._choose(items.some(({ key }) => key === this.chosen) ? this.chosen : null);
   }
 
+  /** Place of all that is drawn. */
+  get all() {
+    const { x, y, width, height } = this.picture.getBBox();
+    return [x - 8, y - 8, width + 16, height + 16];
+  }
+
   /** Look at all, at a scale at which it can be read. */
   _open() {
-    const { clientWidth, clientHeight } = this.picture, [left, top, width, height] = this.all ?? [0, 0, 1, 1];
+    const { clientWidth, clientHeight } = this.picture;
     if (!clientWidth) return;
+    const [left, top, width, height] = this.all;
     const scale = Math.min(MOST, Math.max(LEAST, Math.min(clientWidth / width, clientHeight / height)));
     const across = clientWidth / scale, down = clientHeight / scale;
     this._look([left + Math.min(0, (width - across) / 2), top + (height - down) / 2, across, down]);

@@ -1,18 +1,19 @@
 // Layout of a graph in layers from left to right: boxes, and edges that run through free lanes between them.
 
 export const HEIGHT = 24; // of a box
-const ROW = 34, LANE = 12, GAP = 56, WIDEST_GAP = 130, ROUNDS = 8;
+const ROW = 34, LANE = 12, GAP = 64, ROUNDS = 8;
 
 /**
  * Place boxes and edges. An item is {key, width, from, to}, with the items that it leads from and to; it gets x and y of
- * its upper left corner. Where an item has `closes`, circles are closed by what leads from it. Returns {edges: [{from, to, path}], left, right, top, bottom}.
+ * its upper left corner. Where an item has `closes`, circles are closed by what leads from it. Returns the edges,
+ * {from, to, path}.
  */
 export function arrange(items) {
   const columns = layers(items), edges = lanes(items, columns);
   order(columns);
-  const bounds = place(columns, edges);
+  place(columns);
   for (const edge of edges) edge.path = path(edge.steps, columns);
-  return { edges, ...bounds };
+  return edges;
 }
 
 /** Columns of items: each stands right of what leads to it, where there is no circle; what nothing leads to, near its first. */
@@ -100,8 +101,8 @@ function order(columns) {
   }
 }
 
-/** Give x and y to all, and return the bounds. */
-function place(columns, edges) {
+/** Give x and y to all. */
+function place(columns) {
   for (const column of columns) spread(column, () => 0);
   for (let round = 0; round < ROUNDS; round++) {
     const side = round % 2 ? "left" : "right";
@@ -109,14 +110,12 @@ function place(columns, edges) {
   }
   let x = 0;
   for (const column of columns) {
-    const width = column.reduce((most, each) => Math.max(most, each.width ?? 0), 0), crossing = edges.filter(({ from, to }) => Math.min(from.layer, to.layer) <= column[0].layer && Math.max(from.layer, to.layer) > column[0].layer).length;
-    Object.assign(column, { start: x, end: x + width });
-    for (const each of column) Object.assign(each, { x: x + (width - (each.width ?? 0)) / 2, y: each.middle - HEIGHT / 2 });
-    column.gap = Math.min(WIDEST_GAP, GAP + crossing);
-    x += width + column.gap;
+    const width = column.reduce((most, each) => Math.max(most, each.width ?? 0), 0);
+    column.start = x;
+    column.end = x + width;
+    for (const each of column) Object.assign(each, { x: x + (width - each.width) / 2, y: each.middle - HEIGHT / 2 });
+    x += width + GAP;
   }
-  const all = columns.flat(), turn = GAP / 2;
-  return { left: -turn, right: x - columns.at(-1)?.gap + turn, top: all.reduce((least, { y }) => Math.min(least, y), Infinity), bottom: all.reduce((most, { y }) => Math.max(most, y + HEIGHT), -Infinity) };
 }
 
 /** Place the items of a column, in its order and without overlaps, as near as can be to where each wants to be (isotonic regression). */

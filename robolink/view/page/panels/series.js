@@ -100,9 +100,8 @@ export class Series {
 
 /** Units of ROS 2's own messages (REP 103), by the end of the type and path of a field. */
 const UNITS = [
-  [/(linear_acceleration|Accel\S* .*linear)\.\w$/, "m/s²"], [/Accel\S* .*angular\.\w$/, "rad/s²"], [/(Twist\S*|Odometry) .*linear\.\w$/, "m/s"], [/((Twist\S*|Odometry) .*angular|angular_velocity)\.\w$/, "rad/s"],
-  [/(position|translation)\.\w$|(LaserScan|Range) .*ranges?(\[|$)|range_m..$|Point\S* .*\b[xyz]$/, "m"], [/LaserScan angle_|JointState position|turtlesim\S+ theta$/, "rad"], [/JointState velocity/, "rad/s"],
-  [/BatteryState voltage|cell_voltage/, "V"], [/BatteryState current$/, "A"], [/BatteryState (charge|capacity)/, "Ah"], [/temperature$/, "°C"], [/magnetic_field\.\w$/, "T"], [/fluid_pressure$/, "Pa"], [/(latitude|longitude)$/, "°"], [/altitude$/, "m"],
+  [/(linear_acceleration|Accel\S* .*linear)\.\w$/, "m/s²"], [/(Twist\S*|Odometry) .*linear\.\w$/, "m/s"], [/((Twist\S*|Odometry) .*angular|angular_velocity)\.\w$|JointState vel/, "rad/s"],
+  [/(position|translation)\.\w$|(LaserScan|Range) range|Point\S* .*\b[xyz]$/, "m"], [/LaserScan angle_|JointState pos|theta$/, "rad"], [/voltage/, "V"], [/BatteryState current$/, "A"], [/temperature$/, "°C"],
 ];
 
 /** Unit of a field, or "" where it is not known. */
