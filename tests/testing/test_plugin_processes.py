@@ -11,6 +11,8 @@ import robolink.testing.processes  # noqa: F401
 import robolink.testing.system  # noqa: F401
 from tests.support.plugged import run
 
+pytest_plugins = ["pytester"]
+
 
 @pytest.mark.processes
 def test_the_same_test_runs_against_processes(project: pytest.Pytester) -> None:
