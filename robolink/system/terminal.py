@@ -119,9 +119,9 @@ def open_in_browser(address: str) -> bool:
 
 def has_screen() -> bool:
     """True if a browser that is opened here is seen by who sits at the terminal."""
-    if sys.platform in ("win32", "darwin"):
-        return "SSH_CONNECTION" not in os.environ
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    is_on_desktop = "SSH_CONNECTION" not in os.environ
+    has_server = bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return is_on_desktop if sys.platform in ("win32", "darwin") else has_server
 
 
 def ssh_tunnel(port: int) -> str:

@@ -32,6 +32,8 @@ TIME = r"\x1b\[2m *\d+\.\d s\x1b\[0m  "
 
 def on_terminal(folder: Path, *words: str, **environ: str) -> str:
     """Run robolink with a terminal of 80 columns as its output, until it ends; return what it wrote."""
+    if sys.platform == "win32":
+        pytest.skip("pseudo-terminals are POSIX's")
     import fcntl
     import struct
     import termios
@@ -62,7 +64,6 @@ def on_terminal(folder: Path, *words: str, **environ: str) -> str:
 
 
 @pytest.mark.processes
-@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are POSIX's")
 def test_lines_of_a_launch_on_a_terminal(home: Path, domain: int) -> None:
     (home / "nodes" / "odd.py").write_text(ODD, encoding="utf-8")
     (home / "configs" / "odd.yaml").write_text("nodes: [node: odd]\n")
