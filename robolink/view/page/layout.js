@@ -15,7 +15,7 @@ const ICONS = {
 
 const KEY = "robolink.layouts";
 const PHONE = "(max-width: 700px), (max-height: 480px)"; // as in style.css
-const LOOK = 200, LOSS = 3000; // ms: how often the system is looked at; how long it must have less before panels go
+const FIRST = 100, LOOK = 200, LOSS = 3000; // ms: until the first layout; how often the system is looked at; how long it must have less before panels go
 const NARROWEST = 260, LOWEST = 150; // pixels: less is a strip
 const ROOMY = 240, WIDE = 380; // pixels of the cell, and of the column, that a new panel is given
 
@@ -35,12 +35,13 @@ export class Layout {
     this.model = { columns: [] };
     this.pages = h("nav", { class: "tabs", "aria-label": words("pages") });
     this.small = matchMedia(PHONE);
+    import("./panels/world.js").catch(() => {}); // most systems open with it: its files come while the kind is found out
     this.small.addEventListener("change", () => this._follow(performance.now(), 0));
   }
 
   /** Let each panel that is seen draw what is new. */
   frame(now) {
-    if (!(now - this._looked < LOOK)) {
+    if (!(now - this._looked < (this.key ? LOOK : 0))) {
       this._looked = now;
       this._follow(now);
     }
@@ -115,7 +116,7 @@ export class Layout {
   }
 
   /** Look which kind of system runs; change the layout when another has been there for some time: at once if it has more. */
-  _follow(now, patience = LOOK) {
+  _follow(now, patience = this.key ? LOOK : FIRST) {
     if (!this.app.connection.isOpen) return;
     const found = facts(this.app), model = asked(location.hash), kind = model ? location.hash : kindOf(found);
     const own = model ?? layoutOf(kind, found, this.isPhone), key = (this.isPhone ? "phone." : "") + kind, text = key + JSON.stringify(own);
