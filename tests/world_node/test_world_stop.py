@@ -195,6 +195,32 @@ def test_in_each_world_the_fastest_robot_stands_in_time(system: System, name: st
     stands_soon_and_long(system, world, 0.5)
 
 
+def test_a_test_of_a_launched_system_presses_it(system: System) -> None:
+    system.launch("wander")
+    system.run(2.0)
+    assert abs(system.robot().twist.v) > 0.1
+    system.publish(TOPIC, Bool(data=True))
+    system.run(STANDS_WITHIN)
+    place = system.robot().pose
+    system.run(10.0)
+    assert system.robot().pose == pytest.approx(place, abs=1e-9)
+    system.publish(TOPIC, Bool(data=False))
+    system.run(2.0)
+    assert abs(system.robot().twist.v) > 0.1
+
+
+def test_a_world_without_a_robot_is_stopped_too(system: System, tmp_path: Path) -> None:
+    path = tmp_path / "empty.yaml"
+    path.write_text("world: {}\nrobots: []\n")
+    system.start(simulation.SimulatedWorld, parameters={"world": str(path)})
+    system.run(0.1)  # in its first turn it begins to listen
+    system.publish(TOPIC, Bool(data=True))
+    system.run(1.0)
+    system.publish(TOPIC, Bool(data=False))
+    system.run(1.0)
+    assert (said(system, "STOP holds"), said(system, "STOP is released")) == (1, 1)
+
+
 def test_that_the_world_listens_changes_nothing(system: System, tmp_path: Path) -> None:
     world = system.start(simulation.SimulatedWorld, parameters={"world": world_of(tmp_path, ROBOTS["diff"])})
     system.run(0.1)

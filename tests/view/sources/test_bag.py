@@ -106,6 +106,8 @@ def test_nothing_is_published_to_a_bag(tmp_path: Path, request_: dict[str, Any])
     with playing(tmp_path / "bag") as client:
         client.send(**request_)
         assert "no running system here, but a bag" in client.wait_for("status")["message"]
+        client.send("stop", held=True)
+        assert "no running system here, but a bag" in client.wait_for("status")["message"]
         client.send("getParameters", parameterNames=[])
         assert "no running system here, but a bag" in client.wait_for("status")["message"]
 
