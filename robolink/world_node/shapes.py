@@ -5,7 +5,7 @@ with DELETEALL: it is all of its topic.
 
 | topic | ns | what | type |
 |---|---|---|---|
-| `~/floor` | `floor` | 0: its rectangle, if it has a colour, a picture or paint; 1: its picture | TRIANGLE_LIST |
+| `~/floor` | `floor` | 0: its area, if it has a colour, a picture or paint; 1: its picture | TRIANGLE_LIST |
 | | `paint` | each line or area that is painted; later ones lie higher | TRIANGLE_LIST |
 | `~/walls` | `walls` | walls of one colour and height, at their upper edge | LINE_LIST |
 | | `wall_faces` | the same ones, upright: nothing of them is seen from above | TRIANGLE_LIST |
@@ -28,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import groupby
+from math import isclose
 
 from robolink.clock import Clock
 from robolink.geometry.plane import Area, Pose
@@ -35,7 +36,7 @@ from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
 from robolink.node import Node
 from robolink.sim import World
 from robolink.sim.colours import Colour, colour_of
-from robolink.sim.description import Wall, WorldDescription
+from robolink.sim.description import Shape, Wall, WorldDescription, signed_area
 from robolink.sim.looks import (
     FLOOR,
     OBSTACLE_HEIGHT,
@@ -47,6 +48,7 @@ from robolink.sim.looks import (
     robot_colour,
     wall_colour,
 )
+from robolink.sim.quantities import Point
 from robolink.sim.scene import strokes, triangles
 from robolink.sim.scene.mosaic import mosaic
 from robolink.sim.scene.pictures import cached_picture
@@ -62,6 +64,9 @@ LOWEST, HIGHEST, STEP = -0.02, -0.002, 0.001
 
 MOST_PATCHES, MOST_COLOURS = 10_000, 48
 """Most rectangles and colours of the floor's picture; each rectangle takes 240 bytes."""
+
+MOST_CORNERS = 200
+"""Most corners of a room whose floor ends at its walls."""
 
 MOST_FACES = 2_000
 """Most walls that are drawn as faces too: a map may have a hundred thousand."""
@@ -156,14 +161,30 @@ def _ground(description: WorldDescription) -> Iterator[Marker]:
     if settings.colour is None and picture is None and not description.paint:
         return
     area = ground_area(description, (0, 0) if picture is None else (picture.shape[1], picture.shape[0]))
-    corners = [(area.x_min, area.y_min), (area.x_max, area.y_min), (area.x_max, area.y_max), (area.x_min, area.y_max)]
     colour = FLOOR if settings.colour is None else colour_of(settings.colour)
-    yield markers.flat("floor", 0, triangles.of_polygon(corners), LOWEST, colour)
+    yield markers.flat("floor", 0, _floor_triangles(area, description.walls), LOWEST, colour)
     if picture is not None:
         there = strokes.extent(settings, (), (picture.shape[1], picture.shape[0]))
         side = strokes.resolution_of(settings)
         corner, size = (there.x, there.y, LOWEST + STEP / 4), (there.columns * side, there.rows * side)
         yield markers.floor_picture(mosaic(picture, MOST_PATCHES, MOST_COLOURS), corner, size)
+
+
+def _floor_triangles(area: Area, walls: Sequence[Wall]) -> list[triangles.Triangle]:
+    """Return the triangles of the floor: within the walls of a room that fills its area, else all of the area."""
+    for wall in walls:
+        if wall.closed and len(wall.polyline) <= MOST_CORNERS and _box(wall.polyline) == area:
+            corners = Shape(polygon=wall.polyline).corners()
+            found = list(triangles.of_polygon(corners))
+            if isclose(sum(map(signed_area, found)), signed_area(corners)):  # else it crosses itself
+                return found
+    rectangle = [(area.x_min, area.y_min), (area.x_max, area.y_min), (area.x_max, area.y_max), (area.x_min, area.y_max)]
+    return list(triangles.of_polygon(rectangle))
+
+
+def _box(points: Sequence[Point]) -> Area:
+    xs, ys = zip(*points, strict=True)
+    return Area(min(xs), min(ys), max(xs), max(ys))
 
 
 def ground_area(description: WorldDescription, picture: tuple[int, int] = (0, 0)) -> Area:

@@ -16,7 +16,7 @@ from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
 from robolink.message import encode
 from robolink.sim import load_world
 from robolink.sim.colours import hex_of
-from robolink.sim.description import WorldDescription
+from robolink.sim.description import WorldDescription, signed_area
 from robolink.sim.drawing import draw_world
 from robolink.sim.scene import pictures
 from robolink.world_node import Shapes, Simulation
@@ -262,3 +262,13 @@ def test_the_floors_picture_lies_where_the_world_file_has_it(tmp_path: Path) -> 
     assert ground.pose.position.z < mat.pose.position.z < 0
     red = {round(each.x, 6) for each, tint in zip(mat.points, mat.colors, strict=True) if not tint.g}
     assert red == {0.0, 0.2}
+
+
+def test_the_floor_of_a_room_ends_at_its_walls(tmp_path: Path) -> None:
+    room = "[[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]]"
+    crossed = "[[0, 0], [4, 4], [4, 0], [0, 4]]"
+    for walls, area in ((room, 12.0), (crossed, 16.0)):
+        text = f"world: {{floor: {{colour: red}}}}\nwalls: [{{polyline: {walls}, closed: true}}]"
+        (ground,) = of(Scenery(load_world(tmp_path / "w.yaml", text=text)).floor().markers, "floor")
+        corners = [(each.x, each.y) for each in ground.points]
+        assert sum(signed_area(corners[at : at + 3]) for at in range(0, len(corners), 3)) == pytest.approx(area)
