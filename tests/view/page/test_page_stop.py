@@ -6,6 +6,7 @@ soon the robot stood, in each system and each way.
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -46,13 +47,13 @@ def leave(browser: Browser) -> None:
     browser.wait("location.href == 'about:blank'")
 
 
-def touch(browser: Browser, selector: str) -> None:
-    browser.touch(browser.place(selector))
+def touch(browser: Browser, place: tuple[float, float]) -> None:
+    browser.touch(place)
     browser.touch()
 
 
-def close_at_once(browser: Browser) -> None:
-    browser.click("#stop")
+def close_at_once(browser: Browser, place: tuple[float, float]) -> None:
+    browser.click(place)
     browser.open("about:blank")
 
 
@@ -63,13 +64,13 @@ def release(browser: Browser) -> None:
     browser.wait("!robolink.stopping.held && document.getElementById('stopped').hidden")
 
 
-WAYS: dict[str, Callable[[Browser], object]] = {
-    "button": lambda browser: browser.click("#stop"),
-    "key": lambda browser: browser.press(" "),
-    "phone": lambda browser: touch(browser, "#stop"),
+WAYS: dict[str, Callable[[Browser, tuple[float, float]], object]] = {
+    "button": lambda browser, place: browser.click(place),
+    "key": lambda browser, _: browser.press(" "),
+    "phone": touch,
     "closed": close_at_once,
 }
-"""Ways to press STOP."""
+"""Ways to press STOP, whose button is at a place."""
 
 
 def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float) -> dict[str, Stood]:
@@ -82,7 +83,8 @@ def stop_in_every_way(browser: Browser, stage: Stage, long: float, short: float)
         browser.call("Emulation.setTouchEmulationEnabled", enabled=phone)
         open_page(browser, address)
         stage.drives()
-        found[way] = stage.stands_after(lambda press=press: press(browser), long if way == "closed" else short)  # type: ignore[misc]
+        at_stop = functools.partial(press, browser, browser.place("#stop"))
+        found[way] = stage.stands_after(at_stop, long if way == "closed" else short)
         if way == "closed":
             open_page(browser, address)
         release(browser)
