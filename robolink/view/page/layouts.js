@@ -25,9 +25,10 @@ export function facts(app) {
   const spaces = topics.filter((each) => each.type === "nav_msgs/msg/Odometry").map(({ name }) => name.replace(/[^/]*$/, ""));
   const robots = new Set(frames.filter((name) => BASE.test(name)).map((name) => name.replace(BASE, ""))).size
     || [...app.drivable().keys()].filter((name) => name.endsWith("/cmd_vel") && spaces.includes(name.slice(0, -7))).length;
+  const pictures = topics.filter(({ type }) => IMAGE.test(type)).map(({ name }) => name);
   return {
     isLearn: app.isLearn, isBag: app.isBag, isEmpty: !topics.length && app.connection.graph.nodes.every((name) => /\/_[^/]*$/.test(name)), robots, command,
-    twist: type?.endsWith("Stamped") ? "twist." : "", images: has(IMAGE), turtle: has(/^turtlesim\//), spatial: frames.length > 0 || has(SPATIAL),
+    twist: type?.endsWith("Stamped") ? "twist." : "", images: pictures.find((name) => name.endsWith("/image_raw")) ?? pictures[0], turtle: has(/^turtlesim\//), spatial: frames.length > 0 || has(SPATIAL),
   };
 }
 
@@ -47,7 +48,7 @@ export function asked(hash) {
 
 function screen(kind, { turtle, command, twist, images, spatial }) {
   const series = ["linear.x", "angular.z"].map((path) => ({ topic: command, path: twist + path }));
-  const world = turtle ? "turtlesim" : "world", picture = images ? ["images"] : [];
+  const world = turtle ? "turtlesim" : "world", picture = images ? [["images", { topic: images }]] : [];
   const messages = [command ? ["topics", { topic: command, open: true }] : "topics", "log"], plot = command ? ["plot", { seconds: 30, series }] : "plot";
   if (kind === "empty") return [];
   if (kind === "learn") return [[100, [100, "learn"]]];
@@ -55,12 +56,12 @@ function screen(kind, { turtle, command, twist, images, spatial }) {
   if (kind === "bag") return spatial ? [[62, [100, world]], [38, [56, ...picture, ...messages], [44, plot]]] : [[50, [100, ...picture, ...messages]], [50, [100, plot]]];
   if (kind === "topics") return [[50, [100, "topics"]], [50, [60, ...(spatial ? [world] : []), "graph"], [40, "log"]]];
   if (kind === "drive") return [[65, [100, world]], [35, [56, ...messages, "teleop"], [44, plot]]];
-  return spatial || command ? [[55, [58, world], [42, plot]], [45, [58, "images"], [42, ...messages, "teleop"]]] : [[60, [100, "images"]], [40, [100, ...messages]]];
+  return spatial || command ? [[55, [58, world], [42, plot]], [45, [58, ...picture], [42, ...messages, "teleop"]]] : [[60, [100, ...picture]], [40, [100, ...messages]]];
 }
 
 /** Pages of the panels that a screen has: the first with what one looks at, above the stick. */
 function phone(kind, found) {
-  const ids = screen(kind, found).flatMap(([, ...cells]) => cells.flatMap(([, ...tabs]) => tabs)), above = ids.filter((id) => /^(world|turtlesim|images)$/.test(id));
+  const ids = screen(kind, found).flatMap(([, ...cells]) => cells.flatMap(([, ...tabs]) => tabs)), above = ids.filter((id) => /^(world|turtlesim|images)\b/.test(id));
   const first = ids.includes("teleop") ? [[100, [58, ...above], [42, "teleop"]]] : above.length ? [[100, [100, ...above]]] : [];
   return [...first, ...ids.filter((id) => id !== "teleop" && !above.includes(id)).map((id) => [100, [100, id]])];
 }

@@ -117,26 +117,26 @@ test("what ran before the connection was lost is not shown any more", () => {
   assert.deepEqual([connection.graph.nodes, connection.graph.types.size, connection.graph.published.size, told], [[], 0, 0, 2]);
 });
 
-const NOTHING = { robots: 0, command: undefined, twist: "", images: false, turtle: false, spatial: false };
+const NOTHING = { robots: 0, command: undefined, twist: "", images: undefined, turtle: false, spatial: false };
 const ROBOT = { ...NOTHING, robots: 1, command: "/r/cmd_vel", spatial: true };
 const ids = (model) => model.columns.map(({ cells }) => cells.map(({ tabs }) => tabs.map(({ id }) => id).join("|")).join(" / "));
 
 test("the kind of a system follows from what it has", () => {
   for (const [more, kind] of [
-    [{ isLearn: true, isEmpty: true }, "learn"], [{ isBag: true, images: true }, "bag"], [{ isEmpty: true }, "empty"], [{}, "topics"], [{ robots: 1 }, "drive"],
-    [{ command: "/cmd_vel" }, "drive"], [{ command: "/cmd_vel", images: true }, "camera"], [{ robots: 2, images: true }, "robots"], [{ robots: 2, turtle: true, command: "/t/cmd_vel" }, "drive"],
+    [{ isLearn: true, isEmpty: true }, "learn"], [{ isBag: true, images: "/image" }, "bag"], [{ isEmpty: true }, "empty"], [{}, "topics"], [{ robots: 1 }, "drive"],
+    [{ command: "/cmd_vel" }, "drive"], [{ command: "/cmd_vel", images: "/image" }, "camera"], [{ robots: 2, images: "/image" }, "robots"], [{ robots: 2, turtle: true, command: "/t/cmd_vel" }, "drive"],
   ]) assert.equal(kindOf({ ...NOTHING, ...more }), kind, JSON.stringify(more));
 });
 
 test("each kind has a layout of panels that there are, on a phone too", () => {
   for (const kind of KINDS) {
     for (const isPhone of [false, true]) {
-      for (const found of [NOTHING, ROBOT, { ...ROBOT, images: true, turtle: true }]) assert.ok(tabsOf(layoutOf(kind, found, isPhone)).every(({ id }) => PANELS.includes(id)), kind);
+      for (const found of [NOTHING, ROBOT, { ...ROBOT, images: "/image", turtle: true }]) assert.ok(tabsOf(layoutOf(kind, found, isPhone)).every(({ id }) => PANELS.includes(id)), kind);
       assert.equal(layoutOf(kind, ROBOT, isPhone).columns.length === 0, kind === "empty");
     }
   }
   assert.deepEqual(ids(layoutOf("drive", ROBOT, false)), ["world", "topics|log|teleop / plot"]);
-  assert.deepEqual(ids(layoutOf("camera", { ...ROBOT, images: true }, true)), ["world|images / teleop", "plot", "topics", "log"]);
+  assert.deepEqual(ids(layoutOf("camera", { ...ROBOT, images: "/image" }, true)), ["world|images / teleop", "plot", "topics", "log"]);
   const [messages, plot] = ["topics", "plot"].map((id) => tabsOf(layoutOf("drive", { ...ROBOT, twist: "twist." }, false)).find((tab) => tab.id === id).options);
   assert.deepEqual([messages.topic, plot.series], ["/r/cmd_vel", [{ topic: "/r/cmd_vel", path: "twist.linear.x" }, { topic: "/r/cmd_vel", path: "twist.angular.z" }]]);
 });
