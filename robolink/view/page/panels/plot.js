@@ -13,6 +13,7 @@ addPairs("plot", {
 
 const COLOURS = ["c1", "c2", "c3", "c4", "c5", "c6", "c7", "c8"]; // of the style sheet
 const SPANS = [5, 10, 30, 60, 300];
+const LEAST = 5000; // milliseconds that are shown at least
 const BOTTOM = 18, SIDE = 48, TOP = 6;
 
 class Plot {
@@ -131,7 +132,8 @@ class Plot {
     if (this.view) return this.view;
     const skew = Math.abs(this.lag) > 1000 && Number.isFinite(this.lag) ? this.lag : 0; // clocks of two machines
     const end = this.app.now - (this.app.time.live ? skew : 0);
-    return { start: end - this.seconds * 1000, end };
+    const first = this.series.reduce((least, { count, times }) => (count ? Math.min(least, times[0]) : least), Infinity); // before it there is nothing to see
+    return { start: Math.max(end - this.seconds * 1000, Math.min(first, end - LEAST)), end };
   }
 
   /** Show these times, or follow with null. */
@@ -190,7 +192,7 @@ class Plot {
     }
     this.told = now;
     const { start, end } = this._range(), at = this.hover === undefined ? end : start + (end - start) * this.hover;
-    for (const each of this.series) each.shown.textContent = `${brief(each.at(at), 5)} ${this._unit(each)}`;
+    for (const each of this.series) each.shown.textContent = `${brief(each.at(at), 4)} ${this._unit(each)}`;
   }
 
   _draw(ground) {
