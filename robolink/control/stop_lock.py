@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from robolink.clock import Clock
 from robolink.clock_type import ClockType
 from robolink.event_handler import PublisherEventCallbacks
+from robolink.exceptions import RobolinkError, SecurityError
 from robolink.interfaces.std_msgs.msg import Bool
 from robolink.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -73,8 +74,10 @@ class Lock:
 
     def press(self) -> None:
         """Hold, and say so."""
-        self._say(True)
-        self._set(True)
+        try:
+            self._say(True)
+        finally:  # whoever may not say it holds all the same what it can
+            self._set(True)
 
     def release(self) -> None:
         """Release, and say so: the publisher stays until `withdraw`, so that the message gets out."""
@@ -93,8 +96,7 @@ class Lock:
             return
         self._heard.append((sender, number))
         if held and not self.held:
-            if self._keeps:
-                self._say(True)
+            self._keep()
             self._set(True)
         elif not held and self.held:
             self._set(False)
@@ -102,8 +104,16 @@ class Lock:
 
     def repeat(self) -> None:
         """Publish the true again while it holds, for volatile listeners that came later."""
-        if self.held and self._keeps:
-            self._say(True)
+        if self.held:
+            self._keep()
+
+    def _keep(self) -> None:
+        """Say what others have said, if this is one who does; a node that may not is none the worse for it."""
+        if self._keeps:
+            try:
+                self._say(True)
+            except RobolinkError as error:
+                self._node.get_logger().warning(f"STOP is obeyed here and not kept for others: {error}", once=True)
 
     def withdraw(self) -> None:
         """Destroy the publisher unless it holds, so that nobody who comes later gets what this node published."""
@@ -148,8 +158,11 @@ class StopLock:
 
     def _listen(self) -> None:
         self._node.destroy_guard_condition(self._begin)
-        for qos in (QOS, PLAIN):
-            self._node.create_subscription(Bool, TOPIC, self._on_message, qos)
+        try:
+            for qos in (QOS, PLAIN):
+                self._node.create_subscription(Bool, TOPIC, self._on_message, qos)
+        except SecurityError as error:  # by rights from before there was a lock
+            self._node.get_logger().error(f"STOP is not obeyed here: {error}")
 
     def _on_message(self, message: Bool, info: MessageInfo) -> None:
         sender: Any = (info["publisher_gid"] or {}).get("data", b"")

@@ -9,9 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.control.stop_lock import AGAIN, QOS, TOPIC, Lock, StopLock
+from robolink.exceptions import SecurityError
 from robolink.interfaces.std_msgs.msg import Bool
 from robolink.node import Node
 from robolink.testing import System
+from tests.support.systems import said
 
 
 class Base(Node):
@@ -100,6 +102,39 @@ def test_a_message_that_comes_by_both_subscriptions_counts_once(system: System) 
     assert held.changes == [True, False]
     held.lock.take(True, b"one", 2)
     assert held.changes == [True, False, True]
+
+
+def test_a_node_that_may_not_publish_the_lock_obeys_it_all_the_same(
+    system: System, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: Any, **__: Any) -> None:
+        raise SecurityError("this enclave may not publish /e_stop")
+
+    base = system.start(Base)
+    system.run(0.1)
+    monkeypatch.setattr(base, "create_publisher", refuse)
+    pressed(system, True)
+    system.run(1.0)
+    pressed(system, False)
+    system.run(1.0)
+    assert base.changes == [True, False]
+    assert said(system, "STOP is obeyed here and not kept for others: this enclave") == 1
+    with pytest.raises(SecurityError):
+        base.lock._lock.press()
+    assert base.changes == [True, False, True]
+    with pytest.raises(SecurityError):  # others would go on holding
+        base.lock._lock.release()
+    assert base.lock.held
+
+
+def test_a_node_that_may_not_listen_runs_and_says_so(system: System, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: Any, **__: Any) -> None:
+        raise SecurityError("this enclave may not subscribe to /e_stop")
+
+    base = system.start(Base)
+    monkeypatch.setattr(base, "create_subscription", refuse)
+    system.run(1.0)
+    assert said(system, "STOP is not obeyed here: this enclave") == 1
 
 
 def test_who_only_looks_says_nothing(system: System) -> None:

@@ -9,10 +9,11 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from robolink.control.stop_lock import AGAIN, PLAIN, QOS, TOPIC, TYPE, Lock
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import RobolinkError, SecurityError
 from robolink.graph.endpoint import keys_of, listen
 from robolink.interfaces import find
 from robolink.interfaces.std_msgs.msg import Bool
+from robolink.logging import get_logger
 from robolink.message import decode, type_hash
 from robolink.publisher import Publisher
 from robolink.system import clocks
@@ -115,8 +116,11 @@ class Stopping:
         somebody = EndpointToken(
             context.get_domain_id(), "", "", "", EndpointKind.PUBLISHER, "", "", "", TOPIC, TYPE, hash_, QOS
         )
-        for qos in (QOS, PLAIN):
-            self._listening += listen(self._system.node._owner_, somebody, keys_of(somebody), qos, self._on_arrival)
+        try:
+            for qos in (QOS, PLAIN):
+                self._listening += listen(self._system.node._owner_, somebody, keys_of(somebody), qos, self._on_arrival)
+        except SecurityError as error:
+            get_logger("robolink.view").error(f"STOP of others is not heard here: {error}")
 
     def set(self, held: bool) -> None:
         """Press or release it, for a client."""
