@@ -147,21 +147,20 @@ def test_colours_are_those_of_world_draw(path: Path) -> None:
 
 
 def drawn_colours(description: WorldDescription) -> set[str]:
-    """The colours in the picture of a world by matplotlib."""
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
+    """The colours in which matplotlib draws a world."""
+    pytest.importorskip("matplotlib")
     import numpy as np
+    from matplotlib.colors import to_hex
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 8), dpi=100)
-    figure.add_axes((0, 0, 1, 1))
-    draw_world(figure.axes[0], description)
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    canvas: Any = FigureCanvasAgg(figure)
-    canvas.draw()
-    pixels = np.asarray(canvas.buffer_rgba())[..., :3].reshape(-1, 3)
-    return {hex_of((int(red), int(green), int(blue))) for red, green, blue in np.unique(pixels, axis=0)}
+    axes: Any = Figure().add_subplot()
+    draw_world(axes, description)
+    found = {to_hex(axes.get_facecolor()), *(to_hex(each.get_facecolor()) for each in axes.patches)}
+    found |= {to_hex(each) for lines in axes.collections for each in lines.get_colors()}
+    for image in axes.images:
+        red, green, blue = np.moveaxis(np.asarray(image.get_array()).astype(int), 2, 0)
+        found |= {f"#{each:06x}" for each in np.unique(red << 16 | green << 8 | blue).tolist()}
+    return found
 
 
 def test_the_left_of_a_sign_is_at_the_left_of_who_looks_at_its_face(tmp_path: Path) -> None:
