@@ -216,7 +216,7 @@ def test_layers_are_switched_and_stay_so(browser: Browser) -> None:
         browser.wait(f"!{page.topic('/scan')}.subscription")
         page.picture("world_layers")
         browser.open(page.view.address)
-        browser.wait("globalThis.robolink?.connection.isOpen && robolink.layout?.isReady")
+        browser.wait("globalThis.robolink?.layout?.kind == 'drive' && robolink.layout.isReady")
         page.wait_for_topic("/odom")
         assert browser.js(f"{WORLD}.scene.shows('/scan')") is False
         assert browser.js(f"{page.topic('/scan')}.subscription") == 0
@@ -283,6 +283,7 @@ def test_a_bag_that_is_moved_shows_nothing_of_the_time_before(browser: Browser, 
         opened(browser, "world", view=view),
     ):
         browser.wait("robolink.timeline.bag?.playing && robolink.topics.get('/marks')?.latest")
+        assert not browser.js("document.querySelector('.tool-goal')"), "nobody drives in a bag"
         browser.js("robolink.connection.playback({ play: false, seek: robolink.timeline.bag.start + 8500 })")
         browser.wait(f"{names} === '8'")
         browser.js("robolink.connection.playback({ play: false, seek: robolink.timeline.bag.start + 2500 })")

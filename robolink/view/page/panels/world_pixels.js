@@ -46,11 +46,12 @@ export class Pixels {
   points(places, count, colours) {
     const { view, width, height, pixels } = this, { scale } = view;
     const left = width / 2 - view.x * scale, top = height / 2 + view.y * scale;
+    const isOne = typeof colours === "number";
     for (let i = 0; i < count; i++) {
       const x = (left + places[2 * i] * scale) | 0, y = (top - places[2 * i + 1] * scale) | 0;
       if (x < 1 || y < 1 || x >= width || y >= height) continue;
       const at = y * width + x;
-      pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = colours[i] ?? colours;
+      pixels[at] = pixels[at - 1] = pixels[at - width] = pixels[at - width - 1] = isOne ? colours : colours[i];
     }
   }
 

@@ -1,7 +1,7 @@
 // Scene of the world panel: its layers, the robots, and one picture of them a frame.
 
 import { yawOf, IDENTITY } from "../tf.js";
-import { degrees, goal, KINDS } from "./world_layers.js";
+import { cased, degrees, goal, KINDS } from "./world_layers.js";
 import { Pixels, pixel } from "./world_pixels.js";
 import { drawRobots, reachOf, robotsOf } from "./world_markers.js";
 import { around } from "./world_view.js";
@@ -277,7 +277,12 @@ export class Scene {
     }
     context.stroke();
     this._font(context, 11);
-    this.write(context, `${Number(step.toPrecision(2))} m`, 8 * view.ratio, height - 8 * view.ratio);
+    const low = height - 8 * view.ratio, begin = 10 * view.ratio;
+    this.write(context, `${Number(step.toPrecision(2))} m`, begin, low - 6 * view.ratio);
+    context.beginPath();
+    context.moveTo(begin, low);
+    context.lineTo(begin + step * view.scale, low);
+    cased(context, this.colours, this.colours.text, 2 * view.ratio);
   }
 
   /** Robots with what is drawn of them: {name, frame, pose, body, colour}. */
