@@ -74,10 +74,8 @@ class Lock:
 
     def press(self) -> None:
         """Hold, and say so."""
-        try:
-            self._say(True)
-        finally:  # whoever may not say it holds all the same what it can
-            self._set(True)
+        self._say(True)
+        self._set(True)
 
     def release(self) -> None:
         """Release, and say so: the publisher stays until `withdraw`, so that the message gets out."""

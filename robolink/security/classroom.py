@@ -22,6 +22,9 @@ MOST = 200
 DRIVEN = ("/cmd_vel",)
 """Topics by which the robot is driven: a student has them when it is its turn."""
 
+STOP = "/e_stop"
+"""Topic of STOP: everybody hears it, and who drives may press and release it."""
+
 SEEN = ("/tf", "/tf_static", "/scan", "/odom", "/map", "/clock", "/robot/*", "/robot_description", "/joint_states")
 """Topics of the robot that everybody sees, if no others are named."""
 
@@ -88,8 +91,8 @@ def make(folder: Path, students: int, topics: Class, domain: int) -> list[Path]:
 def rules(name: str, topics: Class, *, may_drive: bool) -> list[Rule]:
     """Return the rules of a student: all in its own namespace, and of the robot what it may see, or drive too."""
     own = [Rule(kind, True, f"{name}/*") for kind in ("publish", "subscribe", "reply", "request")]
-    sees = [Rule("subscribe", True, each) for each in topics.seen]
-    drives = [Rule("publish", True, each) for each in topics.driven] if may_drive else []
+    sees = [Rule("subscribe", True, each) for each in (*topics.seen, STOP)]
+    drives = [Rule("publish", True, each) for each in (*topics.driven, STOP)] if may_drive else []
     asks = [Rule("request", True, f"{ROBOT}/{each}") for each in SERVICES if not each.startswith("set_")]
     return expanded([Profile(name, "node", [*own, *sees, *drives, *asks])])
 

@@ -32,6 +32,13 @@ def may_drive(folder: Path, holder: str = "robot") -> list[str]:
     return [name for name, each in rights(folder, holder).items() if each.allows("publish", "/cmd_vel")]
 
 
+def test_everybody_hears_stop_and_who_drives_may_press_it(folder: Path) -> None:
+    assert main(["security", "class", str(folder), "--turn", "2"]) == 0
+    found = rights(folder, "robot")
+    assert all(each.allows("subscribe", "/e_stop") for each in found.values())
+    assert [name for name, each in found.items() if each.allows("publish", "/e_stop")] == may_drive(folder)
+
+
 def test_each_folder_has_one_key_and_the_rights_of_all(folder: Path) -> None:
     assert {each.name for each in folder.iterdir()} == {
         *("keys", "robot", "router", "student1", "student2", "student3", "teacher"),

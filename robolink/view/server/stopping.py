@@ -123,11 +123,21 @@ class Stopping:
             get_logger("robolink.view").error(f"STOP of others is not heard here: {error}")
 
     def set(self, held: bool) -> None:
-        """Press or release it, for a client."""
-        if held:
-            self._lock.press()
-        else:
-            self._lock.release()
+        """Press or release it, for a client.
+
+        Raises:
+            RobolinkError: if this node may not say so; of a press robots get zeros at least.
+        """
+        try:
+            if held:
+                self._lock.press()
+            else:
+                self._lock.release()
+        except RobolinkError:
+            if held:
+                with contextlib.suppress(RobolinkError):
+                    self._send_zeros()
+            raise
         self._sent = ""  # also what has not changed: who pressed waits for it
         self._publish_state()
 

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from robolink.control.stop_lock import PLAIN, QOS, TOPIC, StopLock
+from robolink.exceptions import SecurityError
 from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.interfaces.std_msgs.msg import Bool
 from robolink.node import Node
@@ -276,6 +277,26 @@ def test_who_may_not_change_anything_sees_it_and_cannot_press_or_release_it(sett
         assert "release of STOP is refused" in page.wait_for("status")["message"]
         if settings:  # a server on which nobody may change anything says nothing itself
             assert (heard.all, robot.heard) == ([True], [])
+
+
+def test_a_press_that_may_not_be_said_is_refused_and_sends_zeros(monkeypatch: pytest.MonkeyPatch) -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        robot, node = Listener(system), system.source.node
+        made = node.create_publisher
+
+        def checked(cls: Any, topic: str, *more: Any, **named: Any) -> Any:
+            if topic == TOPIC:
+                raise SecurityError("this enclave may not publish /e_stop")
+            return made(cls, topic, *more, **named)
+
+        monkeypatch.setattr(node, "create_publisher", checked)
+        page.wait_for("stop", unheard={"/cmd_vel": ["/robot"]})
+        press(page)
+        assert "this enclave may not publish /e_stop" in page.wait_for("status")["message"]
+        until(lambda: bool(robot.heard))
+        assert not moves(robot.heard[0])
+        assert system.view.hub.stopping is not None
+        assert not system.view.hub.stopping.held
 
 
 @pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00", b"\x00\x01\x00\x00\x07", b"nonsense" * 100])
