@@ -170,6 +170,19 @@ def test_six_more_panels_leave_none_a_strip(browser: Browser, width: int, height
         browser.resize(1280, 720)
 
 
+def test_a_low_cell_shows_the_message_and_the_list_when_it_is_closed(browser: Browser) -> None:
+    tab = {"id": "topics", "options": {"topic": "/cmd_vel", "open": True}}
+    columns = [{"width": 50, "cells": [{"height": 70, "tabs": [{"id": "log"}]}, {"height": 30, "tabs": [tab]}]}]
+    with opened(browser, layout={"columns": columns}) as page:
+        page.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
+        list_ = "document.querySelector('table.topics').getClientRects().length"
+        browser.wait("document.querySelector('.detail').getClientRects().length")
+        assert browser.js(list_) == 0
+        page.picture("layout_low_topics")
+        browser.click(".detail button")
+        browser.wait(list_)
+
+
 def test_many_columns_scroll(browser: Browser) -> None:
     names = ["plot", "log", "topics", "services", "parameters", "graph", "actions"]
     with opened(browser, *names):
