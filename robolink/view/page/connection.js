@@ -11,17 +11,8 @@ const UNPAINTED = 3; // batches that may wait for a frame before the page stops 
 const ACKNOWLEDGE = Uint8Array.of(0x80);
 const CALL_SECONDS = 10;
 
-/** Types that the page publishes, also where nobody has advertised them. */
-const HEADER = "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n===\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-const VECTOR = "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n";
-const TWIST = `Vector3 linear\nVector3 angular\n===\n${VECTOR}`;
-const POSE = "Point position\nQuaternion orientation\n===\nMSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n===\nMSG: geometry_msgs/Quaternion\nfloat64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
-const KNOWN = {
-  "geometry_msgs/msg/Twist": TWIST,
-  "geometry_msgs/msg/TwistStamped": `std_msgs/Header header\nTwist twist\n===\nMSG: geometry_msgs/Twist\n${TWIST}===\n${HEADER}`,
-  "geometry_msgs/msg/PoseStamped": `std_msgs/Header header\nPose pose\n===\nMSG: geometry_msgs/Pose\n${POSE}===\n${HEADER}`,
-  "geometry_msgs/msg/PoseWithCovarianceStamped": `std_msgs/Header header\nPoseWithCovariance pose\n===\nMSG: geometry_msgs/PoseWithCovariance\nPose pose\nfloat64[36] covariance\n===\nMSG: geometry_msgs/Pose\n${POSE}===\n${HEADER}`,
-};
+/** Services that any node has, which a person seldom calls. */
+export const COMMON = /\/(describe_parameters|get_parameters|get_parameter_types|list_parameters|set_parameters|set_parameters_atomically|get_type_description|get_loggers?_levels?|set_loggers?_levels?)$/;
 
 const milliseconds = (view, at) => (view.getUint32(at + 4, true) * 4294967296 + view.getUint32(at, true)) / 1e6;
 
@@ -48,6 +39,7 @@ export class Connection extends Emitter {
     this._calls = new Map();
     this._publishers = new Map();
     this._schemas = new Map();
+    this._types = {}; // what may be published though nobody advertises it
   }
 
   /** True while the server has been heard. */
@@ -136,9 +128,9 @@ export class Connection extends Emitter {
 
   unsubscribe(id) { this.send({ op: "unsubscribe", subscriptionIds: [id] }); }
 
-  /** Schema of a type, from a channel or from what the page knows; null if neither has it. */
+  /** Schema of a type, from a channel or from the server; null if neither has it. */
   schemaOf(type, text) {
-    const known = text ?? [...this.channels.values()].find((each) => each.schemaName === type)?.schema ?? KNOWN[type];
+    const known = text ?? [...this.channels.values()].find((each) => each.schemaName === type)?.schema ?? this._types[type];
     if (known === undefined) return null;
     const key = `${type}\n${known}`; // a system that was started again may have changed the type
     if (!this._schemas.has(key)) this._schemas.set(key, new Schema(type, known));
@@ -230,6 +222,7 @@ const TEXT = {
   serverInfo(connection, operation) {
     const isFirst = !connection.info; // it comes again when what the server can do has changed
     connection.info = operation;
+    Object.assign(connection._types, operation.robolink?.types);
     if (isFirst) connection.emit("open");
     connection.emit("info", operation);
     if (!isFirst) return;

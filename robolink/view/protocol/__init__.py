@@ -22,4 +22,5 @@ The page's subprotocol robolink.v1 is Foxglove's JSON and binary operations, and
   `exercise`, all of one: text, hints shown, and the `report` of its last check with the `track` of the robots.
 - `connectionGraphUpdate` also has `nodes`, and the `type` of each topic and service.
 - `advertise` and `advertiseServices` also have what is `hidden`.
+- `serverInfo` has `robolink`; its `types` are definitions (ros2msg) of what the page publishes.
 """

@@ -26,7 +26,7 @@ from robolink.transport.base import Handle
 from robolink.view.channels import Audience, Channel, Retained, ServiceEntry
 from robolink.view.protocol.answers import WARNING
 from robolink.view.sources.listening import Listening, latches
-from robolink.view.sources.types import PATIENCE, Types
+from robolink.view.sources.types import PATIENCE, Types, published
 from robolink.wire import EndpointKind, EndpointToken
 
 MOST_CLIENTS = 32
@@ -405,7 +405,8 @@ class LiveSource:
     def information(self) -> dict[str, Any]:
         """Return fields of `serverInfo`."""
         network = requested(None, os.environ).value
-        return {"robolink": {"bag": None, "domain": self.context.get_domain_id(), "network": network[:120]}}
+        own = {"bag": None, "domain": self.context.get_domain_id(), "network": network[:120], "types": published()}
+        return {"robolink": own}
 
     def close(self) -> None:
         """Let go of everything."""

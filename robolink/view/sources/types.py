@@ -10,6 +10,7 @@ from typing import Any
 from robolink.bag.topic import message_definition
 from robolink.context import Context
 from robolink.exceptions import RobolinkError
+from robolink.interfaces.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, Twist, TwistStamped
 from robolink.message import Service
 from robolink.system import clocks
 from robolink.type_lookup import type_of
@@ -22,8 +23,16 @@ THREADS = 4
 PATIENCE = 10.0
 """Time in seconds after which a look-up that failed is tried again."""
 
+PUBLISHED = (Twist, TwistStamped, PoseStamped, PoseWithCovarianceStamped)
+"""Types that the page publishes, also where nobody else does."""
+
 Halves = tuple[Shown, ...]
 """Schemas of a message (one), or of a service (request, response)."""
+
+
+def published() -> dict[str, str]:
+    """Return the definitions (ros2msg) of what the page publishes, by the names of the types."""
+    return {each.__ros_type__: message_definition(each) for each in PUBLISHED}
 
 
 class Types:
