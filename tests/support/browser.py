@@ -212,13 +212,22 @@ class Browser:
 
     def drag(self, start: str | tuple[float, float], end: str | tuple[float, float], steps: int = 5) -> None:
         """Press the mouse at one place, and release it at another."""
-        (x, y), (to_x, to_y) = (self.place(each) if isinstance(each, str) else each for each in (start, end))
+        first, last = (self.place(each) if isinstance(each, str) else each for each in (start, end))
+        self.grab(first, last, steps)
+        self.let_go(last)
+
+    def grab(self, start: tuple[float, float], end: tuple[float, float], steps: int = 5) -> None:
+        """Press the mouse at one place, and move it to another with the button held."""
+        (x, y), (to_x, to_y) = start, end
         self._mouse("mouseMoved", x, y)
         self._mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
         for step in range(1, steps + 1):
             share = step / steps
             self._mouse("mouseMoved", x + (to_x - x) * share, y + (to_y - y) * share, button="left", buttons=1)
-        self._mouse("mouseReleased", to_x, to_y, button="left", clickCount=1)
+
+    def let_go(self, at: tuple[float, float]) -> None:
+        """Release the mouse's button."""
+        self._mouse("mouseReleased", *at, button="left", clickCount=1)
 
     def drag_data(self, start: str, end: str) -> None:
         """Drag what is draggable, with its data, and drop it on another element."""

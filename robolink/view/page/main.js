@@ -24,6 +24,7 @@
 
 import { Connection } from "./connection.js";
 import { button, Emitter, h, isTyping } from "./dom.js";
+import { find } from "./find.js";
 import { Layout } from "./layout.js";
 import { offered } from "./layouts.js";
 import { addRecordButton } from "./recording.js";
@@ -31,7 +32,7 @@ import { Stop } from "./stop.js";
 import { Frames } from "./tf.js";
 import { Timeline } from "./timeline.js";
 import { Topics } from "./topics.js";
-import { addWords, choose, words } from "./words.js";
+import { choose, words } from "./words.js";
 
 const TWISTS = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"];
 const SEVERAL = ["world", "topics", "plot", "images"]; // panels of which a second one has a use
@@ -56,7 +57,6 @@ class App extends Emitter {
     this.tf = new Frames(this.time);
     this.settings = settings;
     this.words = words;
-    this.addWords = addWords;
     this.work = 0;
   }
 
@@ -150,7 +150,7 @@ function buildHeader() {
   document.body.classList.toggle("learning", app.isLearn);
   const name = systemName(), state = h("span", { id: "state", role: "status" });
   document.title = name === "robolink" ? name : `${name} – robolink`;
-  const menu = h("select", { id: "add", "aria-label": words("add"), title: `${words("add")} (a)`, onchange: () => {
+  const menu = h("select", { id: "add", "aria-label": words("add"), title: words("add"), onchange: () => {
     if (menu.value === "reset") app.layout.reset();
     else if (SEVERAL.includes(menu.value)) app.layout.add(menu.value);
     else app.layout.open(menu.value);
@@ -158,7 +158,7 @@ function buildHeader() {
   } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
   const tools = h("span", { id: "tools" });
   document.getElementById("header").replaceChildren(h("h1", { title: name }, name), state, h("span", { class: "gap" }),
-    h("button", { id: "more", type: "button", "aria-label": words("more"), popovertarget: "menu" }, "⋯"),
+    button(words("find.find"), words("find.title"), () => find(app), { id: "find" }), h("button", { id: "more", type: "button", "aria-label": words("more"), popovertarget: "menu" }, "⋯"),
     h("div", { id: "menu", popover: "auto" }, tools, menu, button("◐", words("theme"), turnTheme, { id: "theme" }),
       button(words("language"), null, turnLanguage, { id: "language" }), button("?", words("help"), help, { id: "help" })), app.stopping.button());
   app.emit("header", tools);
@@ -173,13 +173,13 @@ function showState() {
   state.className = connection.isOpen ? (readOnly ? "warn" : "good") : "bad";
 }
 
-const SHORTCUTS = ["space", "d", "g", "i", "a", "1…9", "⇥ ←→ del", "esc", "p", "l", "←↑→↓", "+ -", "f", "m", "t", "?"];
-const SHORTCUT_WORDS = { "1…9": "digit", "⇥ ←→ del": "tabs", "←↑→↓": "arrows", "+ -": "zoom" };
+const SHORTCUTS = ["space", "/", "d", "g", "i", "r", "1…9", "⇥ ←→ del", "esc", "p", "l", ", .", "←↑→↓", "+ -", "f", "m", "t", "?"];
+const SHORTCUT_WORDS = { "1…9": "digit", ", .": "step", "⇥ ←→ del": "tabs", "←↑→↓": "arrows", "+ -": "zoom" };
 
 function help() {
   const speed = h("p", { class: "dim" }), show = () => { speed.textContent = `robolink ${app.connection.info?.robolink?.version ?? ""} · ${stamps.length} ${words("frames")}/s`; };
   const timer = setInterval(show, 500);
-  const keys = SHORTCUTS.filter((key) => !(app.isBag || app.isLearn) || !["space", "d", "g", "i"].includes(key));
+  const keys = SHORTCUTS.filter((key) => !(app.isBag || app.isLearn) || !["space", "d", "g", "i", "r"].includes(key));
   const dialog = h("dialog", { class: "help", onclose: () => { clearInterval(timer); dialog.remove(); } }, h("h2", {}, words("shortcuts")),
     h("dl", {}, ...keys.flatMap((key) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
     speed, h("form", { method: "dialog" }, h("button", {}, words("close"))));
@@ -203,8 +203,8 @@ addEventListener("pointerdown", ({ target }) => { clicked = target.closest("butt
 
 function shortcut(event) {
   if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
-  const acts = { "?": help, a: () => document.getElementById("add").focus(), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
-  if (!app.isBag && !app.isLearn) acts.g = acts.i = inWorld;
+  const acts = { "?": help, "/": () => find(app), ",": () => app.timeline.step(-1), ".": () => app.timeline.step(1), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
+  if (!app.isBag && !app.isLearn) Object.assign(acts, { g: inWorld, i: inWorld, r: () => document.getElementById("record").click() });
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
   // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
   if (!act || (event.key === " " && event.target !== clicked && event.target.matches("button, summary"))) return;

@@ -59,6 +59,14 @@ export class Timeline {
     this._show();
   }
 
+  /** Go some seconds on, or back. */
+  step(seconds) {
+    const [start, end] = this._span(), { bag } = this, { time } = this.app, at = bag ? bag.time : time.live ? end : time.at;
+    const to = Math.max(start, Math.min(end, at + seconds * 1000));
+    if (bag) bag.time = to; // the next step may come before the server's answer
+    this._scrub((to - start) / (end - start));
+  }
+
   /** First and last time of the slider. */
   _span() {
     if (this.bag) return [this.bag.start, this.bag.end];

@@ -1,4 +1,4 @@
-// Words of the page in English and Portuguese. A panel's own are added with `addWords`.
+// Words of the page in English and Portuguese. A panel's own are added with `addPairs`.
 
 const WORDS = {
   en: {
@@ -13,9 +13,9 @@ const WORDS = {
     "timeline.memory": "last minute: {bytes} of {most}", "ago": "{seconds} s ago", "speed": "speed",
     "shortcuts": "Shortcuts",
     "key.space": "stop all robots", "key.?": "this list", "key.p": "pause or go on", "key.l": "back to now",
-    "key.digit": "to the panel of this number", "key.d": "drive by keys", "key.a": "add a panel", "key.tabs": "on a panel's tab: the next one, close it", "key.t": "dark or light", "key.esc": "close; end a tool",
+    "key.digit": "to the panel of this number", "key.d": "drive by keys", "key./": "find, and open it", "key.r": "record, and end it", "key.step": "one second back, on", "key.tabs": "on a panel's tab: the next one, close it", "key.t": "dark or light", "key.esc": "close; end a tool",
     "key.arrows": "world: move; timeline: step", "key.zoom": "world: zoom in, out", "key.f": "world: fit all",
-    "key.g": "world: goal pose", "key.i": "world: initial pose",
+    "key.g": "world: goal pose (arrows, with ⇧ its heading, enter)", "key.i": "world: initial pose",
     "world.fit": "fit all (f)", "world.follow": "follow", "world.layers": "layers",
     "world.fixed": "fixed frame", "world.goal": "goal pose (g)", "world.initial": "initial pose (i)",
     "world.tool": "click, and drag to set the heading", "world.sent": "{topic}: x {x}, y {y}, {degrees}° in {frame}",
@@ -41,9 +41,9 @@ const WORDS = {
     "timeline.memory": "último minuto: {bytes} de {most}", "ago": "há {seconds} s", "speed": "velocidade",
     "shortcuts": "Atalhos",
     "key.space": "parar todos os robôs", "key.?": "esta lista", "key.p": "pausar ou continuar", "key.l": "voltar ao agora",
-    "key.digit": "ir ao painel deste número", "key.d": "dirigir por teclas", "key.a": "adicionar um painel", "key.tabs": "na aba de um painel: a próxima, fechar", "key.t": "escuro ou claro", "key.esc": "fechar; encerrar a ferramenta",
+    "key.digit": "ir ao painel deste número", "key.d": "dirigir por teclas", "key./": "buscar, e abrir", "key.r": "gravar, e encerrar", "key.step": "um segundo atrás, à frente", "key.tabs": "na aba de um painel: a próxima, fechar", "key.t": "escuro ou claro", "key.esc": "fechar; encerrar a ferramenta",
     "key.arrows": "mundo: mover; tempo: passo", "key.zoom": "mundo: aproximar, afastar", "key.f": "mundo: mostrar tudo",
-    "key.g": "mundo: pose de destino", "key.i": "mundo: pose inicial",
+    "key.g": "mundo: pose de destino (setas, com ⇧ a direção, enter)", "key.i": "mundo: pose inicial",
     "world.fit": "mostrar tudo (f)", "world.follow": "seguir", "world.layers": "camadas",
     "world.fixed": "referencial fixo", "world.goal": "pose de destino (g)", "world.initial": "pose inicial (i)",
     "world.tool": "clique, e arraste para dar a direção", "world.sent": "{topic}: x {x}, y {y}, {degrees}° em {frame}",
@@ -60,9 +60,6 @@ const WORDS = {
 };
 
 let language = "en";
-
-/** Add a panel's words: {en: {key: text}, pt: {key: text}}. */
-export function addWords(more) { for (const name of Object.keys(WORDS)) Object.assign(WORDS[name], more[name]); }
 
 /** Add a panel's words under a name: {key: [English, Portuguese]}. */
 export function addPairs(name, pairs) {

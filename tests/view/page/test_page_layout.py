@@ -202,7 +202,7 @@ def test_a_split_is_moved_by_keys_and_never_makes_a_strip(browser: Browser) -> N
         assert browser.js(CELLS)[0][0] >= NARROWEST - 3
 
 
-def test_keys_open_the_stick_the_goal_and_the_menu(browser: Browser) -> None:
+def test_keys_open_the_stick_the_goal_and_what_one_finds(browser: Browser) -> None:
     with opened(browser, "topics") as page:
         page.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
         browser.press("d")
@@ -215,9 +215,12 @@ def test_keys_open_the_stick_the_goal_and_the_menu(browser: Browser) -> None:
         browser.wait("!robolink.layout.panel('world').tool")
         browser.press("1")
         browser.wait("document.activeElement.dataset.panel == 'topics'")
-        browser.press("a")
-        browser.wait("document.activeElement.id == 'add'")
-        browser.js("document.activeElement.blur()")
+        browser.press("/")
+        browser.type("zz")
+        browser.wait("document.getElementById('found').innerText == 'nothing has this name'")
+        browser.press("Enter")
+        browser.press("Escape")
+        browser.wait("!document.querySelector('dialog')")
         browser.press("?")
         browser.wait("/\\d+ frames\\/s/.test(document.querySelector('dialog').innerText)")
 

@@ -30,9 +30,16 @@ export class Images {
     this.closed = true;
   }
 
+  /** Show a topic's pictures. */
+  find(name) {
+    this.topic = name;
+    this._list();
+    this.app.remember();
+  }
+
   _build() {
     const { words } = this.app;
-    this.picker = new Picker(words("images.topic"), words("images.none"), (name) => { this.topic = name; this._list(); this.app.remember(); });
+    this.picker = new Picker(words("images.topic"), words("images.none"), (name) => this.find(name));
     this.state = h("p", { class: "dim state" });
     this.canvas = h("canvas", { class: "image", "aria-label": words("panel.images"), width: 1, height: 1, hidden: true });
     this.context = this.canvas.getContext("2d");

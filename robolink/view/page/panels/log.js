@@ -35,7 +35,7 @@ class Log {
       return input;
     };
     const levels = h("select", { class: "level", title: words("log.level"), "aria-label": words("log.level"), onchange: () => { this.level = Number(levels.value); this._again(); } },
-      ...Object.entries(LEVELS).map(([value, name]) => h("option", { value, selected: Number(value) === this.level }, `≥ ${name}`)));
+      ...Object.entries(LEVELS).map(([value, name]) => h("option", { value, selected: Number(value) === this.level }, `${name} +`))); // its first letter chooses it
     this.count = h("span", { class: "dim count" });
     this.pauseButton = button("❚❚", words("log.pause"), () => { this.paused = !this.paused; this.pauseButton.ariaPressed = String(this.paused); this._tell(); }, { className: "pause" });
     this.list = h("ol", { class: "log", tabIndex: 0, "aria-label": words("panel.log") });

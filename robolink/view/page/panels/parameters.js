@@ -34,10 +34,19 @@ class Parameters {
   _build() {
     const { words } = this.app;
     this.picker = new Picker(words("parameters.node"), words("parameters.none"), (name) => { this.node = name; this._list(); this.app.remember(); });
-    const search = h("input", { type: "search", value: this.filter, placeholder: words("parameters.filter"), "aria-label": words("parameters.filter"), oninput: () => { this.filter = search.value; this._hide(); } });
+    const search = this.search = h("input", { type: "search", value: this.filter, placeholder: words("parameters.filter"), "aria-label": words("parameters.filter"), oninput: () => { this.filter = search.value; this._hide(); } });
     this.state = h("p", { role: "status", class: "state" });
     this.body = h("div", { class: "fields parameters" });
     this.element.append(h("div", { class: "row" }, this.picker.element, search, button("↻", words("parameters.again"), () => { this.read = ""; this._list(); })), h("div", { class: "scroll padded" }, this.state, this.body));
+  }
+
+  /** Show a parameter of a node, and give the keyboard to it. */
+  find(node, name) {
+    if (node !== this.node) this.rows.clear();
+    Object.assign(this, { node, wanted: name, filter: "" });
+    this.search.value = "";
+    this._list();
+    this._hide();
   }
 
   _list() {
@@ -167,6 +176,11 @@ class Parameters {
 
   _hide() {
     for (const [name, { row }] of this.rows) row.hidden = !name.toLowerCase().includes(this.filter.toLowerCase());
+    const field = this.rows.get(this.wanted)?.row.querySelector("input:not([type=range])");
+    if (!field) return;
+    this.wanted = "";
+    field.focus();
+    field.select();
   }
 
   _event(event) {

@@ -1,6 +1,6 @@
 // Services panel: calls any service with a form made from its type, and shows the answer.
 
-import { partSchema } from "../connection.js";
+import { COMMON, partSchema } from "../connection.js";
 import { button, h } from "../dom.js";
 import { addPairs } from "../words.js";
 import { absence, Form, Picker } from "./form.js";
@@ -10,8 +10,6 @@ addPairs("services", {
   choose: ["service", "service"], none: ["no services", "nenhum service"], none_why: ["No node serves anything of its own. Tick 'all' for what every node serves.", "Nenhum node serve algo próprio. Marque 'todos' para ver o que todo node serve."], call: ["Call", "Chamar"], calling: ["calling…", "chamando…"],
   answered: ["answered in {seconds} s", "respondido em {seconds} s"], hidden: ["all", "todos"], hidden_title: ["also those of parameters and actions", "também os de parâmetros e actions"],
 });
-
-const OFTEN = /\/(describe_parameters|get_parameters|get_parameter_types|list_parameters|set_parameters|set_parameters_atomically|get_type_description|get_loggers?_levels?|set_loggers?_levels?)$/;
 
 class Services {
   constructor(element, app, options) {
@@ -43,7 +41,7 @@ class Services {
   }
 
   _list() {
-    const { connection, words } = this.app, names = [...connection.services.values()].filter((each) => this.all || (!each.hidden && !OFTEN.test(each.name))).map(({ name }) => name);
+    const { connection, words } = this.app, names = [...connection.services.values()].filter((each) => this.all || (!each.hidden && !COMMON.test(each.name))).map(({ name }) => name);
     this.service = this.picker.show(names, this.service);
     const found = connection.service(this.service);
     if (found?.type !== this.shown?.type || found?.name !== this.shown?.name) this._form(found);
@@ -59,6 +57,12 @@ class Services {
     this.service = name;
     this._list();
     this.app.remember();
+  }
+
+  /** Show a service, and give the keyboard to its form. */
+  find(name) {
+    this._choose(name);
+    this.place.querySelector("input, select, .call")?.focus();
   }
 
   _form(found) {

@@ -128,6 +128,9 @@ class Topics {
     return row;
   }
 
+  /** Show a topic's messages, all of them unfolded. */
+  find(name) { if (this.chosen?.topic.name !== name) this._choose(name, true); }
+
   /** Show the messages of a topic, with `open` what of them is unfolded; of the chosen one, or of null, none. */
   _choose(name, open = []) {
     const before = this.chosen;

@@ -180,12 +180,26 @@ class World {
   }
 
   _key(event) {
-    if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return undefined;
+    if (this.tool && this._aim(event)) return event.preventDefault();
     const acts = { f: () => this.fit(), g: () => this._use("goal"), i: () => this._use("initial"), m: () => this._turnMenu(),
       Escape: () => (this.menu.hidden ? this._use(null) : this._turnMenu(false)) };
-    if (!acts[event.key]) return;
+    if (!acts[event.key]) return undefined;
     event.preventDefault();
     acts[event.key]();
+    if (this.tool) this.scene.wanted = { x: this.view.x, y: this.view.y, yaw: 0 };
+    return undefined;
+  }
+
+  /** Move the pose that is being set by arrow keys, turn it with shift, and send it by Enter; false for another key. */
+  _aim({ key, shiftKey }) {
+    const { wanted } = this.scene, [dx, dy] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[key] ?? [];
+    if (!wanted || (dx === undefined && key !== "Enter")) return false;
+    const step = 12 * this.view.ratio / this.view.scale;
+    if (key === "Enter") this._send();
+    else if (shiftKey) wanted.yaw -= ((dx || dy) * Math.PI) / 12;
+    else Object.assign(wanted, { x: wanted.x + dx * step, y: wanted.y + dy * step });
+    return true;
   }
 
   /** Take a tool in the hand, or put it away. */

@@ -124,7 +124,7 @@ export class View {
   }
 
   _key(event) {
-    if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.tool.active || isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
     const step = 60;
     const acts = {
       ArrowLeft: () => this._pan(step, 0), ArrowRight: () => this._pan(-step, 0), ArrowUp: () => this._pan(0, step), ArrowDown: () => this._pan(0, -step),
