@@ -256,6 +256,7 @@ function begin() {
     app.lost = false;
   });
   connection.on("status", ({ level, message }) => { if (level > 0) app.tell(message, level > 1); });
+  matchMedia("(prefers-color-scheme: light)").addEventListener("change", showTheme);
   addEventListener("keydown", shortcut);
   addEventListener("pagehide", () => app.remember());
   connection.open();

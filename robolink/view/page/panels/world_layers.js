@@ -12,6 +12,7 @@ import { around } from "./world_view.js";
 const MOST_POINTS = 120_000;
 const TRAIL_POINTS = 400;
 const ELLIPSE = 2; // standard deviations
+const ALL_ROUND = 6.2; // radians of a scan that has no gap
 const SHOWN_BEAMS = 60; // of a scan, as lines
 const SIGHT = 1.2; // metres that a camera's view is drawn
 const REACHED = 0.35; // metres from a goal at which it is reached
@@ -73,7 +74,7 @@ class Scan extends Layer {
     for (let i = 0; i < this.ends.length; i += 2) places.push(this.ends[i] === this.ends[i] ? [view.toX(this.ends[i]), view.toY(this.ends[i + 1])] : null);
     context.fillStyle = faint(this.colour, 0.06);
     context.beginPath();
-    context.moveTo(...from);
+    if (Math.abs(this.message.ranges.length * this.message.angle_increment) < ALL_ROUND) context.moveTo(...from);
     for (const place of places) context.lineTo(...(place ?? from));
     context.fill();
     context.strokeStyle = faint(this.colour, 0.18);
