@@ -100,9 +100,16 @@ export class Layout {
   reset() {
     const { [this.key]: _, ...others } = memory();
     localStorage.setItem(KEY, JSON.stringify(others));
+    for (const tab of [...this.shown.keys()]) this._close(tab);
     this.key = "";
     this.model = { columns: [] };
     this._follow(performance.now(), 0);
+  }
+
+  /** Remove what a phone's page has below. */
+  removeLast() {
+    const { tabs, current } = this.model.columns[this.page].cells.at(-1);
+    this._remove(tabs[current]);
   }
 
   /** Go to a panel by its number. */
@@ -173,6 +180,7 @@ export class Layout {
     const { columns } = this.model, held = document.activeElement;
     this.elements.clear();
     this.main.replaceChildren();
+    this.main.classList.remove("single");
     columns.forEach((column, i) => {
       if (i) this.main.append(this._splitter(column, i));
       const element = h("div", { class: "column" });
@@ -250,11 +258,11 @@ export class Layout {
 
   _key(event, cell) {
     const count = cell.tabs.length, step = { ArrowRight: 1, ArrowLeft: count - 1 }[event.key];
-    if (event.key === "Delete") return this._remove(cell.tabs[cell.current]);
-    if (!step) return undefined;
+    if (event.key === "Delete") this._remove(cell.tabs[cell.current]);
+    else if (step) this._select(cell, (cell.current + step) % count);
+    else return;
     event.preventDefault();
-    this._select(cell, (cell.current + step) % count);
-    return this.elements.get(cell).querySelector("[aria-selected=true]").focus();
+    this.elements.get(cell)?.querySelector("[aria-selected=true]").focus();
   }
 
   _open(tab) {
@@ -316,7 +324,6 @@ export class Layout {
   _tidied() {
     for (const column of this.model.columns) column.cells = column.cells.filter(({ tabs }) => tabs.length);
     this.model.columns = this.model.columns.filter(({ cells }) => cells.length);
-    this.main.classList.remove("single");
     this._changed();
     this._build();
   }

@@ -152,10 +152,12 @@ function buildHeader() {
   document.title = name === "robolink" ? name : `${name} – robolink`;
   const menu = h("select", { id: "add", "aria-label": words("add"), title: words("add"), onchange: () => {
     if (menu.value === "reset") app.layout.reset();
+    else if (menu.value === "remove") app.layout.removeLast();
     else if (SEVERAL.includes(menu.value)) app.layout.add(menu.value);
     else app.layout.open(menu.value);
     menu.value = "";
-  } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), h("option", { value: "reset" }, words("layout.reset")));
+    document.getElementById("menu").hidePopover(); // a phone's: the panel is behind it
+  } }, h("option", { value: "" }, words("add")), ...offered(app).map((id) => h("option", { value: id }, words(`panel.${id}`))), app.layout?.isPhone && h("option", { value: "remove" }, words("panel.remove")), h("option", { value: "reset" }, words("layout.reset")));
   const tools = h("span", { id: "tools" });
   document.getElementById("header").replaceChildren(h("h1", { title: name }, name), state, h("span", { class: "gap" }),
     button(words("find.find"), words("find.title"), () => find(app), { id: "find" }), h("button", { id: "more", type: "button", "aria-label": words("more"), popovertarget: "menu" }, "⋯"),

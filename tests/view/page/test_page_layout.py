@@ -96,6 +96,8 @@ def test_what_one_changes_stays_and_is_remembered_for_that_kind(browser: Browser
         browser.wait("robolink.layout.panel('parameters')")
         changed = browser.js(PANELS)
         assert changed != DRIVE
+        browser.click(".cell:has(.panel-world) button[title='whole page']")
+        browser.wait("document.querySelector('.panel-world').clientWidth > 0.9 * innerWidth")
         page.node.create_publisher(Image, "image", 10)
         browser.wait("robolink.layout._next.startsWith('camera')")  # it has seen that
         assert browser.js(PANELS) == changed, "what one has just changed does not go"
@@ -105,8 +107,10 @@ def test_what_one_changes_stays_and_is_remembered_for_that_kind(browser: Browser
         browser.js("robolink.drivable = () => new Map(); robolink.layout.reset()")
         assert "parameters" in browser.js("localStorage['robolink.layouts']"), "of another kind it stays"
         browser.choose("#add", "services")
+        browser.click(".cell:has(.panel-services) button[title='whole page']")
         browser.choose("#add", "reset")
         browser.wait(f"!({PANELS}).join().includes('services')")
+        browser.wait("document.querySelector('.cell').clientHeight > 100")
 
 
 def test_what_a_panel_shows_is_remembered_though_the_layout_follows(browser: Browser) -> None:
@@ -141,7 +145,7 @@ def test_tabs_by_keys_and_by_dragging(browser: Browser) -> None:
         browser.wait("document.activeElement.dataset.tab == 'teleop' && robolink.layout.panel('teleop')")
         page.picture("layout_tabs")
         browser.press("Delete")
-        browser.wait("!robolink.layout.has('teleop')")
+        browser.wait("!robolink.layout.has('teleop') && document.activeElement.dataset.tab == 'log'")
         browser.drag_data("[data-tab=log]", ".cell:has(.panel-plot)")
         browser.wait(f"({PANELS})[1] == 'topics / plot|log'")
         browser.wait("document.querySelector('.panel-log').clientHeight > 100")

@@ -88,6 +88,9 @@ def test_the_map_is_free_and_the_rest_is_in_one_menu(browser: Browser) -> None:
         browser.choose("#add", "parameters")
         browser.wait("document.querySelector('.panel-parameters')?.clientHeight > 300")
         assert browser.js("document.querySelector('.tabs button:last-child').ariaPressed") == "true"
+        browser.click("#more")
+        browser.choose("#add", "remove")
+        browser.wait("!robolink.layout.has('parameters')")
 
 
 def test_on_its_side_the_stick_is_beside_the_world(browser: Browser) -> None:
