@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from robolink.control.stop_lock import AGAIN, PLAIN, QOS, TOPIC, TYPE, Lock
@@ -59,8 +59,8 @@ class Drives(NamedTuple):
 
 def drives_of(ends: Iterable[EndpointToken]) -> Drives:
     """Return the nodes that obey the lock, and those that do not, of these ends; hidden nodes are not robots."""
-    shown = [each for each in ends if not each.node_name.startswith("_")]
-    subscriptions = [each for each in shown if each.kind is EndpointKind.SUBSCRIPTION]
+    every = list(ends)
+    subscriptions = [each for each in every if each.kind is EndpointKind.SUBSCRIPTION and not _is_hidden(each)]
     obeyed = {each.full_node_name for each in subscriptions if each.name == TOPIC and each.type_name == TYPE}
     movers: dict[str, set[str]] = {}
     types: dict[str, str] = {}
@@ -68,9 +68,11 @@ def drives_of(ends: Iterable[EndpointToken]) -> Drives:
         if each.type_name in DRIVEN and COMMAND.search(each.name):
             movers.setdefault(each.name, set()).add(each.full_node_name)
             types.setdefault(each.name, each.type_name)
+    publishers = [each for each in every if each.kind is EndpointKind.PUBLISHER]
+    views = {each.full_node_name for each in publishers if each.name == TOPIC and _is_hidden(each)}
     senders: dict[str, set[str]] = {}
-    for each in shown:
-        if each.kind is EndpointKind.PUBLISHER and each.name in movers:
+    for each in publishers:  # also a command's, which drives; a view's sends zeros, and no more while it holds
+        if each.name in movers and each.full_node_name not in views:
             senders.setdefault(each.name, set()).add(each.full_node_name)
     unheard: dict[str, list[str]] = {}
     for topic, nodes in sorted(movers.items()):
@@ -79,6 +81,10 @@ def drives_of(ends: Iterable[EndpointToken]) -> Drives:
             unheard[topic] = sorted(nodes - obeyed)
     deaf = {topic: types[topic] for topic, nodes in movers.items() if nodes - obeyed}
     return Drives(sorted(obeyed), unheard, deaf, types)
+
+
+def _is_hidden(end: EndpointToken) -> bool:
+    return end.node_name.startswith("_")
 
 
 class Stopping:
@@ -136,7 +142,8 @@ class Stopping:
         except RobolinkError:
             if held:
                 with contextlib.suppress(RobolinkError):
-                    self._send_zeros()
+                    self._send_zeros(all_of_them=True)  # those that obey hear nothing of it either
+                self._changed_at = clocks.monotonic()
             raise
         self._sent = ""  # also what has not changed: who pressed waits for it
         self._publish_state()
@@ -157,6 +164,7 @@ class Stopping:
                 self._lock.repeat()
         elif now >= self._changed_at + FIRST:
             self._lock.withdraw()
+            self._end_zeros(())
 
     def close(self) -> None:
         """Listen no longer."""
@@ -203,23 +211,27 @@ class Stopping:
             self._sent = state
             self._tell(state)
 
-    def _send_zeros(self) -> None:
+    def _send_zeros(self, *, all_of_them: bool = False) -> None:
         if not self._keeps:
             return
         drives = self._drives
         topics = drives.deaf
-        if self._now < self._changed_at + FIRST and len(drives.all_of_them) <= FEW:
+        if all_of_them or (self._now < self._changed_at + FIRST and len(drives.all_of_them) <= FEW):
             topics = {**drives.deaf, **drives.all_of_them}  # those that need it first
         self._end_zeros(topics)
+        self._begin_zeros({topic: each for topic, each in topics.items() if topic not in self._zeros})
+        for publisher, cls in self._zeros.values():
+            publisher.publish(zeros(cls, self._system.time()))
+
+    def _begin_zeros(self, topics: Mapping[str, str]) -> None:
+        """Create publishers for topics by their types: as many as there is time for, but one at least."""
         end = clocks.monotonic() + AT_ONCE
         for topic, type_name in topics.items():
-            if topic not in self._zeros:
-                if clocks.monotonic() > end:
-                    break
-                cls = find(type_name)
+            cls = find(type_name)
+            with contextlib.suppress(SecurityError):  # the others get theirs
                 self._zeros[topic] = self._system.node.create_publisher(cls, topic, 10), cls
-            publisher, cls = self._zeros[topic]
-            publisher.publish(zeros(cls, self._system.time()))
+            if clocks.monotonic() > end:
+                break
 
     def _end_zeros(self, but: Iterable[str]) -> None:
         """Send no more zeros, but on these topics."""

@@ -15,9 +15,9 @@ from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from robolink.interfaces.std_msgs.msg import Bool
 from robolink.node import Node
 from robolink.serialization import serialize_message
-from robolink.view.server import Settings, View
+from robolink.view.server import Settings, View, stopping
 from robolink.view.server.publishing import moves
-from robolink.view.server.stopping import DRIVEN, drives_of
+from robolink.view.server.stopping import DRIVEN, FEW, drives_of
 from robolink.view.sources.live import LiveSource
 from robolink.wire import EndpointKind, EndpointToken
 from tests.support.view_clients import Client, Shown, shown, until
@@ -147,6 +147,15 @@ def test_robots_that_listen_get_zeros_in_the_first_second_only() -> None:
         press(page, False)
         until(lambda: not lock.held)
         assert changes == [True, False]
+
+
+def test_zeros_reach_every_topic_however_slow_the_machine_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stopping, "AT_ONCE", -1.0)  # there is never time for a second publisher
+    with shown() as system, system.spinning(), system.client() as page:
+        robots = [Listener(system, Twist, f"/r{number}/cmd_vel") for number in range(FEW + 2)]
+        told(page, False, unheard={f"/r{number}/cmd_vel": ["/robot"] for number in range(FEW + 2)})
+        press(page)
+        until(lambda: all(len(each.heard) > 5 for each in robots))
 
 
 def test_while_it_holds_no_client_may_drive() -> None:
@@ -290,13 +299,15 @@ def test_a_press_that_may_not_be_said_is_refused_and_sends_zeros(monkeypatch: py
             return made(cls, topic, *more, **named)
 
         monkeypatch.setattr(node, "create_publisher", checked)
-        page.wait_for("stop", unheard={"/cmd_vel": ["/robot"]})
+        StopLock(system.node, print)  # obeys, and hears nothing of it
+        page.wait_for("stop", obeyed=["/robot"])
         press(page)
         assert "this enclave may not publish /e_stop" in page.wait_for("status")["message"]
         until(lambda: bool(robot.heard))
         assert not moves(robot.heard[0])
         assert system.view.hub.stopping is not None
         assert not system.view.hub.stopping.held
+        until(lambda: not system.node.count_publishers("/cmd_vel"))
 
 
 @pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00", b"\x00\x01\x00\x00\x07", b"nonsense" * 100])
@@ -335,8 +346,11 @@ def test_a_base_behind_a_mux_that_listens_gets_zeros_and_no_warning() -> None:
     ends = [*mux, end("/twist_mux", "PUBLISHER", "/cmd_vel_out"), end("/base", "SUBSCRIPTION", "/cmd_vel_out")]
     found = drives_of(ends)
     assert (found.obeyed, found.unheard, set(found.deaf)) == (["/twist_mux"], {}, {"/cmd_vel_out"})
-    found = drives_of([*ends, end("/joystick", "PUBLISHER", "/cmd_vel_out")])
-    assert found.unheard == {"/cmd_vel_out": ["/base"]}
+    for other in ("/joystick", "/_robolink_pub_7", "/_ros2cli_12"):  # also a command that drives
+        found = drives_of([*ends, end(other, "PUBLISHER", "/cmd_vel_out")])
+        assert found.unheard == {"/cmd_vel_out": ["/base"]}
+    view = [end("/_robolink_cli_8", "PUBLISHER", topic) for topic in (TOPIC, "/cmd_vel_out")]  # it sends zeros
+    assert not drives_of([*ends, *view]).unheard
 
 
 def test_commands_and_other_topics_are_no_robots() -> None:
