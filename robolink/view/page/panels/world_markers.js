@@ -16,7 +16,7 @@ const FLOOR = /^(floor|paint)$/, UPRIGHT = "wall_faces"; // seen from above, upr
 const ROBOT = /(^|\/)(base_link|base_footprint)$/;
 const BODY = 0.15; // metres: radius of a robot whose shape nobody publishes
 const CASE = "rgba(0,0,0,0.6)", NOSE = "#fff";
-const LARGE = 60; // pixels of a radius above which a robot is drawn anew, and not as a picture that is turned
+const LARGE = 60, TURNS = 48, MOST_STAMPS = 1000; // of many robots smaller ones (pixels of a radius) are copied from pictures in so many turns
 
 export class Markers {
   constructor(topic) {
@@ -311,32 +311,33 @@ export function reachOf({ body }) { return body ? Math.max(...halves(body.marker
 export function drawRobots(context, scene, robots) {
   const { view } = scene, unit = view.ratio;
   for (const robot of robots) {
-    const radius = Math.max(reachOf(robot) * view.scale, 5 * unit);
-    context.save();
-    context.translate(view.toX(robot.pose.x), view.toY(robot.pose.y));
-    context.rotate(-yawOf(robot.pose));
-    if (radius > LARGE * unit || robots.length === 1) paint(context, scene, robot, radius);
-    else {
-      const picture = stamp(scene, robot, radius);
-      context.drawImage(picture, -picture.width / 2, -picture.height / 2);
-    }
-    context.restore();
+    const radius = Math.max(reachOf(robot) * view.scale, 5 * unit), x = view.toX(robot.pose.x), y = view.toY(robot.pose.y), yaw = yawOf(robot.pose);
+    if (scene.many && radius < LARGE * unit) {
+      const picture = stamp(scene, robot, radius, Math.round((yaw * TURNS) / 2 / Math.PI));
+      context.drawImage(picture, Math.round(x - picture.width / 2), Math.round(y - picture.height / 2)); // whole pixels are copied fast
+    } else turned(context, scene, robot, radius, x, y, yaw);
   }
 }
 
-/** Picture of a robot that looks to the right: one for all that look the same. */
-function stamp(scene, robot, radius) {
-  const { body, colour } = robot, key = `${radius.toFixed(1)} ${colour} ${body?.fill} ${body?.marker.type} ${Object.values(body?.marker.scale ?? {})} ${body?.marker.points.length}`;
-  if (scene.stamps.size > 200) scene.stamps.clear();
+/** Picture of a robot in one of many turns: one for all that look the same. */
+function stamp(scene, robot, radius, turn) {
+  const { body, colour } = robot, key = `${radius.toFixed(1)} ${turn} ${colour} ${body?.fill} ${body?.marker.type} ${Object.values(body?.marker.scale ?? {})} ${body?.marker.points.length}`;
+  if (scene.stamps.size > MOST_STAMPS) scene.stamps.clear();
   if (!scene.stamps.has(key)) {
     const canvas = document.createElement("canvas"), size = 2 * Math.ceil(1.5 * radius + 5 * scene.view.ratio);
     canvas.width = canvas.height = size;
-    const context = canvas.getContext("2d");
-    context.translate(size / 2, size / 2);
-    paint(context, scene, robot, radius);
+    turned(canvas.getContext("2d"), scene, robot, radius, size / 2, size / 2, (turn * 2 * Math.PI) / TURNS);
     scene.stamps.set(key, canvas);
   }
   return scene.stamps.get(key);
+}
+
+function turned(context, scene, robot, radius, x, y, yaw) {
+  context.save();
+  context.translate(x, y);
+  context.rotate(-yaw);
+  paint(context, scene, robot, radius);
+  context.restore();
 }
 
 /** Draw a robot at the origin, looking to the right: a ring in its colour, its body, and an arrow. */
