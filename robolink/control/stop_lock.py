@@ -106,7 +106,7 @@ class Lock:
             self._keep()
 
     def _keep(self) -> None:
-        """Say what others have said, if this is one who does; a node that may not is none the worse for it."""
+        """Publish the true of others, if this is one that keeps it; a node that may not publish obeys all the same."""
         if self._keeps:
             try:
                 self._say(True)
