@@ -138,7 +138,7 @@ def test_the_emergency_stop_is_stop(browser: Browser) -> None:
         browser.release("w")
         browser.js("document.querySelector('.estop').focus()")
         browser.press(" ")  # a key that is hit in a hurry never releases
-        browser.js("robolink.stopping.since = 0")
+        browser.js("robolink.stopping.since = -1e9")
         browser.click(".estop")
         browser.wait("!robolink.stopping.held")
         browser.click(STICK)
