@@ -73,10 +73,10 @@ export class Pixels {
     }
   }
 
-  /** Draw a line into the ground, between two places in metres. */
+  /** Draw a line into the ground, between two places in metres, with an edge that is seen on any floor. */
   groundLine(x0, y0, x1, y1, colour) {
     const { view } = this;
-    this.line(view.toX(x0), view.toY(y0), view.toX(x1), view.toY(y1), colour, this.ground, 1);
+    for (const wide of [2, 1]) this.line(view.toX(x0), view.toY(y0), view.toX(x1), view.toY(y1), wide > 1 ? this.halo : colour, this.ground, wide);
   }
 
   /** Draw a line between two places in pixels, one or two pixels wide, into the picture or the ground. */

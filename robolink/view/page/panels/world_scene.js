@@ -44,6 +44,7 @@ export class Scene {
     this.costs = new Uint32Array(256).map((_, i) => cost(i));
     for (const entry of this.layers.values()) if (entry.seen && entry.layer.map) this._update(entry, entry.layer.message);
     this.stamps.clear();
+    this.pixels.halo = pixel(this.colours.halo);
     this._paint();
   }
 
