@@ -71,6 +71,22 @@ export function isTyping(target) {
   return target instanceof HTMLElement && (target.isContentEditable || /^(TEXTAREA|SELECT)$/.test(target.tagName));
 }
 
+/** What the browser remembers under a name: {} if it is nothing, nonsense, or forbidden. */
+export function recall(key) {
+  try {
+    return { ...JSON.parse(localStorage.getItem(key)) };
+  } catch {
+    return {};
+  }
+}
+
+/** Let the browser remember something, if it may and has room. */
+export function remember(key, value) {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch { /* then it is forgotten with the page */ }
+}
+
 export function download(name, content, type = "application/octet-stream") {
   const blob = content instanceof Blob ? content : new Blob([content], { type });
   const address = URL.createObjectURL(blob);

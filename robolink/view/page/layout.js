@@ -2,7 +2,7 @@
 //
 // layouts.js has the model, and what each kind opens with. On a phone one column is shown at a time, chosen at the bottom.
 
-import { button, h } from "./dom.js";
+import { button, h, recall, remember } from "./dom.js";
 import { emptyPage } from "./empty.js";
 import { asked, facts, KINDS, kindOf, layoutOf, recalled, tabsOf } from "./layouts.js";
 import { words } from "./words.js";
@@ -13,20 +13,11 @@ const ICONS = {
   log: "M4 5h16v14H4zM7 9l3 3l-3 3M13 15h4", images: "M4 6h16v13H4zM7 16l4-5l3 3l2-2l3 4M15 9h1", graph: "M4 9h5v6H4zM15 4h5v5h-5zM15 15h5v5h-5zM9 12h3M12 7v10M12 7h3M12 17h3",
 };
 
-const KEY = "robolink.layouts";
+const KEY = "robolink.layouts"; // what is remembered: layouts by kind, those of a phone below "phone.KIND"
 const PHONE = "(max-width: 700px), (max-height: 480px)"; // as in style.css
 const FIRST = 100, LOOK = 200, LOSS = 3000; // ms: until the first layout; how often the system is looked at; how long it must have less before panels go
 const NARROWEST = 260, LOWEST = 150; // pixels: less is a strip
 const ROOMY = 240, WIDE = 380; // pixels of the cell, and of the column, that a new panel is given
-
-/** What the browser remembers: layouts by kind, those of a phone below "phone.KIND". */
-function memory() {
-  try {
-    return { ...JSON.parse(localStorage.getItem(KEY)) };
-  } catch {
-    return {};
-  }
-}
 
 export class Layout {
   /** @param main element that holds the panels  @param app given to each panel */
@@ -73,7 +64,7 @@ export class Layout {
   save() {
     if (!this.key) return;
     for (const [tab, { panel }] of this.shown) tab.options = { ...tab.options, ...panel?.save?.() };
-    localStorage.setItem(KEY, JSON.stringify({ ...memory(), [this.key]: { changed: this.changed, ...this.model } }));
+    remember(KEY, { ...recall(KEY), [this.key]: { changed: this.changed, ...this.model } });
   }
 
   /**
@@ -98,8 +89,8 @@ export class Layout {
 
   /** Go back to what the kind of system opens with. */
   reset() {
-    const { [this.key]: _, ...others } = memory();
-    localStorage.setItem(KEY, JSON.stringify(others));
+    const { [this.key]: _, ...others } = recall(KEY);
+    remember(KEY, others);
     for (const tab of [...this.shown.keys()]) this._close(tab);
     this.key = "";
     this.model = { columns: [] };
@@ -140,7 +131,7 @@ export class Layout {
   /** Change to the layout of another kind: panels that it has, too, stay as they are. */
   _change(key, own) {
     this.save();
-    const kept = memory()[key], model = recalled(kept, own), left = [...this.shown.keys()];
+    const kept = recall(KEY)[key], model = recalled(kept, own), left = [...this.shown.keys()];
     Object.assign(this, { key, changed: Boolean(kept?.changed), touched: false, page: 0 });
     for (const column of model.columns) {
       for (const cell of column.cells) {
@@ -372,7 +363,7 @@ function icon(d) {
 
 /** Bar between two parts: dragged by a pointer, or moved by arrow keys. `scale` is the pixels of a share, `least` those that each keeps. */
 function splitter(orientation, least, scale, shares, change, done) {
-  const element = h("div", { class: `splitter ${orientation}`, role: "separator", tabIndex: 0, "aria-orientation": orientation });
+  const element = h("div", { class: `splitter ${orientation}`, role: "separator", tabIndex: 0, "aria-orientation": orientation, "aria-label": words("layout.split") });
   const move = (pixels) => {
     const [before, after] = shares(), sum = before + after, edge = Math.min(least / scale(), sum / 2);
     const now = Math.min(Math.max(before + pixels / scale(), edge), sum - edge);

@@ -23,7 +23,7 @@
 // - on("header", (element) => ...): place for a tool in the header; also emitted when it is built again
 
 import { Connection } from "./connection.js";
-import { button, Emitter, h, isTyping } from "./dom.js";
+import { button, Emitter, h, isTyping, recall, remember } from "./dom.js";
 import { find } from "./find.js";
 import { Layout } from "./layout.js";
 import { offered } from "./layouts.js";
@@ -39,10 +39,7 @@ const SEVERAL = ["world", "topics", "plot", "images"]; // panels of which a seco
 const SETTINGS = "robolink.settings";
 
 /** What is remembered by the browser beside the layout. */
-const settings = { theme: "", language: "" };
-try {
-  Object.assign(settings, JSON.parse(localStorage.getItem(SETTINGS) ?? "{}"));
-} catch { /* nonsense is forgotten */ }
+const settings = { theme: "", language: "", ...recall(SETTINGS) };
 choose(settings.language);
 
 /** Everything that a panel may use, as the head of this file lists it. */
@@ -92,7 +89,7 @@ class App extends Emitter {
   /** Remember layout, options and settings. */
   remember() {
     this.layout.save();
-    localStorage.setItem(SETTINGS, JSON.stringify(settings));
+    remember(SETTINGS, settings);
   }
 
   /** Topics that drive robots, with their types: also those that nobody publishes yet. */
@@ -183,7 +180,7 @@ function help() {
   const timer = setInterval(show, 500);
   const keys = SHORTCUTS.filter((key) => !(app.isBag || app.isLearn) || !["space", "d", "g", "i", "r"].includes(key));
   const dialog = h("dialog", { class: "help", onclose: () => { clearInterval(timer); dialog.remove(); } }, h("h2", {}, words("shortcuts")),
-    h("dl", {}, ...keys.flatMap((key) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
+    h("dl", {}, ...keys.flatMap((key) => [h("dt", {}, h("kbd", {}, key === "space" ? words("space") : key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
     speed, h("form", { method: "dialog" }, h("button", {}, words("close"))));
   show();
   document.body.append(dialog);

@@ -5,13 +5,13 @@ const WORDS = {
     "language": "Português", "connecting": "connecting…", "connected": "connected", "lost": "connection lost: trying again",
     "read-only": "read-only", "read-only.why": "this page was opened without the token: it may look, but not act",
     "theme": "dark or light", "help": "shortcuts (?)", "close": "close",
-    "add": "Add panel", "layout.reset": "Reset layout", "more": "menu", "pages": "pages", "domain": "domain {domain}", "panel.drive": "Drive", "panel.bigger": "whole page", "panel.move": "move",
+    "add": "Add panel", "layout.reset": "Reset layout", "layout.split": "edge of a panel", "more": "menu", "pages": "pages", "domain": "domain {domain}", "panel.drive": "Drive", "panel.bigger": "whole page", "panel.move": "move",
     "panel.remove": "remove panel", "panel.world": "World", "panel.topics": "Topics", "panel.plot": "Plot", "panel.log": "Log", "panel.teleop": "Teleop",
     "panel.services": "Services", "panel.parameters": "Parameters", "panel.images": "Images", "panel.graph": "Graph", "panel.actions": "Actions", "panel.turtlesim": "Turtlesim", "panel.learn": "Exercises", "frames": "frames",
     "empty": "no panels: add one above", "loading": "loading…",
     "live": "live", "live.title": "back to now (l)", "pause": "pause (p)", "play": "play (p)", "timeline": "time",
     "timeline.memory": "last minute: {bytes} of {most}", "ago": "{seconds} s ago", "speed": "speed",
-    "shortcuts": "Shortcuts",
+    "shortcuts": "Shortcuts", "space": "space",
     "key.space": "stop all robots", "key.?": "this list", "key.p": "pause or go on", "key.l": "back to now",
     "key.digit": "to the panel of this number", "key.d": "drive by keys", "key./": "find, and open it", "key.r": "record, and end it", "key.step": "one second back, on", "key.tabs": "on a panel's tab: the next one, close it", "key.t": "dark or light", "key.esc": "close; end a tool",
     "key.arrows": "world: move; timeline: step", "key.zoom": "world: zoom in, out", "key.f": "world: fit all",
@@ -33,13 +33,13 @@ const WORDS = {
     "language": "English", "connecting": "conectando…", "connected": "conectado", "lost": "conexão perdida: tentando de novo",
     "read-only": "só leitura", "read-only.why": "esta página foi aberta sem o token: pode olhar, mas não agir",
     "theme": "escuro ou claro", "help": "atalhos (?)", "close": "fechar",
-    "add": "Novo painel", "layout.reset": "Layout inicial", "more": "menu", "pages": "páginas", "domain": "domínio {domain}", "panel.drive": "Dirigir", "panel.bigger": "página inteira", "panel.move": "mover",
+    "add": "Novo painel", "layout.reset": "Layout inicial", "layout.split": "borda de um painel", "more": "menu", "pages": "páginas", "domain": "domínio {domain}", "panel.drive": "Dirigir", "panel.bigger": "página inteira", "panel.move": "mover",
     "panel.remove": "remover painel", "panel.world": "Mundo", "panel.topics": "Topics", "panel.plot": "Gráfico", "panel.log": "Log", "panel.teleop": "Teleoperação",
     "panel.services": "Services", "panel.parameters": "Parâmetros", "panel.images": "Imagens", "panel.graph": "Grafo", "panel.actions": "Actions", "panel.turtlesim": "Turtlesim", "panel.learn": "Exercícios", "frames": "quadros",
     "empty": "nenhum painel: adicione um acima", "loading": "carregando…",
     "live": "ao vivo", "live.title": "voltar ao agora (l)", "pause": "pausar (p)", "play": "continuar (p)", "timeline": "tempo",
     "timeline.memory": "último minuto: {bytes} de {most}", "ago": "há {seconds} s", "speed": "velocidade",
-    "shortcuts": "Atalhos",
+    "shortcuts": "Atalhos", "space": "espaço",
     "key.space": "parar todos os robôs", "key.?": "esta lista", "key.p": "pausar ou continuar", "key.l": "voltar ao agora",
     "key.digit": "ir ao painel deste número", "key.d": "dirigir por teclas", "key./": "buscar, e abrir", "key.r": "gravar, e encerrar", "key.step": "um segundo atrás, à frente", "key.tabs": "na aba de um painel: a próxima, fechar", "key.t": "escuro ou claro", "key.esc": "fechar; encerrar a ferramenta",
     "key.arrows": "mundo: mover; tempo: passo", "key.zoom": "mundo: aproximar, afastar", "key.f": "mundo: mostrar tudo",
@@ -72,7 +72,7 @@ export function addPairs(name, pairs) {
 /** Choose the language: "en" or "pt"; anything else is what the browser asks for. */
 export function choose(wanted) {
   const told = wanted || (globalThis.navigator?.languages ?? []).find((each) => /^(en|pt)/.test(each)) || "en";
-  language = told.startsWith("pt") ? "pt" : "en";
+  language = `${told}`.startsWith("pt") ? "pt" : "en";
   return language;
 }
 

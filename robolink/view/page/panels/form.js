@@ -84,7 +84,7 @@ export class Form {
       return { element: box, read: () => box.checked };
     }
     const isText = field.type.endsWith("string");
-    const input = h("input", { type: "text", value: `${value}`, "data-field": path, inputMode: isText ? "text" : "decimal", autocomplete: "off", spellcheck: false });
+    const input = h("input", { type: "text", value: `${value}`, "data-field": path, "aria-label": path, inputMode: isText ? "text" : "decimal", autocomplete: "off", spellcheck: false });
     if (field.bound) input.maxLength = field.bound;
     const read = () => (isText ? input.value : this._number(input, field.type, path, input.value));
     if (!constants.length) return { element: input, read };

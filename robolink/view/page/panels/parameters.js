@@ -104,7 +104,7 @@ class Parameters {
       const box = h("input", { type: "checkbox", "data-parameter": name, onchange: () => this._set(name, { type: BOOL, bool_value: box.checked }) });
       return { element: box, show: (given) => { box.checked = given.bool_value; } };
     }
-    const input = h("input", { type: "text", "data-parameter": name, autocomplete: "off", spellcheck: false });
+    const input = h("input", { type: "text", "data-parameter": name, "aria-label": name, autocomplete: "off", spellcheck: false });
     const slider = range && h("input", { type: "range", min: Number(range.from_value), max: Number(range.to_value), step: Number(range.step) || (value.type === 2 ? 1 : "any"), "aria-label": name, title: this.app.words("parameters.range", { low: range.from_value, high: range.to_value }) });
     const send = (text) => {
       try {
