@@ -18,7 +18,7 @@ CONTROLS |= {"application", "dialog", "menuitem", "option", "listbox", "link", "
 
 TEXTS = """(() => {
   const DATA = "script, noscript, table tbody, .tree, .log, .legend, select.picker, select.fixed, svg.graph, .form"
-    + ", .parameters > label > span";
+    + ", .parameters > label > span, .panel-images .state";
   const found = new Set(), walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     if (!node.parentElement.closest(DATA)) found.add(node.data.trim());
