@@ -4,6 +4,7 @@ import { short } from "./cdr.js";
 import { COMMON } from "./connection.js";
 import { h } from "./dom.js";
 import { offered } from "./layouts.js";
+import { showModal } from "./stop.js";
 import { addPairs, words } from "./words.js";
 
 addPairs("find", {
@@ -53,7 +54,6 @@ export function find(app) {
     list.replaceChildren(...found.slice(0, MOST).map(([text, kind, act]) => h("button", { onclick: () => { dialog.close(); act(); } }, text, h("span", { class: "dim" }, kind))), found.length ? "" : words("find.none"));
   };
   if (connection.info?.capabilities?.includes("parameters")) connection.send({ op: "getParameters", parameterNames: [] });
-  document.body.append(dialog);
-  dialog.showModal();
+  showModal(app, dialog);
   show();
 }

@@ -28,7 +28,7 @@ import { find } from "./find.js";
 import { Layout } from "./layout.js";
 import { offered } from "./layouts.js";
 import { addRecordButton } from "./recording.js";
-import { Stop } from "./stop.js";
+import { showModal, Stop } from "./stop.js";
 import { Frames } from "./tf.js";
 import { Timeline } from "./timeline.js";
 import { Topics } from "./topics.js";
@@ -183,8 +183,7 @@ function help() {
     h("dl", {}, ...keys.flatMap((key) => [h("dt", {}, h("kbd", {}, key === "space" ? words("space") : key)), h("dd", {}, words(`key.${SHORTCUT_WORDS[key] ?? key}`))])),
     speed, h("form", { method: "dialog" }, h("button", {}, words("close"))));
   show();
-  document.body.append(dialog);
-  dialog.showModal();
+  showModal(app, dialog);
 }
 
 /** Drive by keys: the stick has the keyboard. */

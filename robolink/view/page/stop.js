@@ -23,6 +23,18 @@ const AGAIN = 250; // ms after which a press that was not told is sent again
 const SHOWN = 4; // names in a line
 const GUARD = 700; // ms in which a release does nothing: the second half of a double click
 
+/** Show a dialog above the page: a press beside it closes it, and on STOP presses that, which must stay in reach. */
+export function showModal(app, dialog) {
+  dialog.addEventListener("pointerdown", ({ clientX, clientY }) => {
+    const { left, right, top, bottom } = dialog.getBoundingClientRect();
+    if (clientX >= left && clientX <= right && clientY >= top && clientY <= bottom) return;
+    dialog.close();
+    if (document.elementFromPoint(clientX, clientY)?.id === "stop") app.stopping.press();
+  });
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
 /** The lock: `held` as the server told it. The app's event "stop" tells of a press, and of every change. */
 export class Stop {
   constructor(app) {

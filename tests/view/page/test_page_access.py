@@ -124,3 +124,12 @@ def test_a_dialog_keeps_the_keyboard_and_esc_closes_it(browser: Browser, key: st
         browser.press("Escape")
         browser.wait("!document.querySelector('dialog')")
         assert browser.js("document.activeElement.id") == "theme", "the keyboard is where it was"
+
+
+@pytest.mark.parametrize("key", ["?", "/"])
+def test_stop_is_in_reach_behind_a_dialog(browser: Browser, key: str) -> None:
+    with opened(browser, "topics"):
+        browser.press(key)
+        browser.wait("document.querySelector('dialog[open]')")
+        browser.click("#stop")
+        browser.wait("robolink.stopping.held && !document.querySelector('dialog')")
