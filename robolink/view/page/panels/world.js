@@ -90,6 +90,7 @@ class World {
     const wanted = this.fixed || ["map", "world", "odom"].find((name) => names.includes(name)) || (names.length ? tf.root(names[0]) : "map");
     if (wanted === tf.fixed) return;
     tf.fixed = wanted;
+    this.scene.loose.clear(); // of the frame before: no note flashes as the page opens
     tf.clearCache();
     tf.version += 1;
     this.scene.groundChanged = true;
