@@ -40,11 +40,12 @@ PLAIN = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
 
 AGAIN = 0.25
 """Time in seconds after which a true is said once more: two messages that crossed are heard in any order, and everybody
-should end with the same.
+should end with the same. It is also the shortest time between two echoes of others: each takes a publisher, and some
+participants that echo a flood would flood each other for ever.
 """
 
 _REMEMBERED = 1000
-"""Own publishers whose last messages may still come back, and messages of others that may come twice."""
+"""Own publishers whose last messages may still come back, and senders whose messages may come twice."""
 
 
 class Lock:
@@ -70,7 +71,10 @@ class Lock:
         self._node, self._on_change, self._events, self._keeps = node, on_change, events, keeps
         self._publisher: Publisher[Bool] | None = None
         self._own: deque[bytes] = deque(maxlen=_REMEMBERED)
-        self._heard: deque[tuple[bytes, int | None]] = deque(maxlen=_REMEMBERED)
+        self._heard: dict[bytes, int] = {}
+        """Number of the last message of each sender, the one that was heard last at the end."""
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME, time_base=node.context.time)
+        self._echo_due = 0
 
     def press(self) -> None:
         """Hold, and say so."""
@@ -82,19 +86,37 @@ class Lock:
         self._say(False)
         self._set(False)
 
-    def take(self, held: bool, sender: bytes, number: int | None) -> None:
+    def take(self, held: bool, sender: bytes, number: int) -> None:
         """Take what came on the topic.
 
         Args:
             held: What it says.
             sender: Global id of its publisher.
-            number: Number that the publisher gave it, by which one that comes twice is known.
+            number: Number that the publisher gave it.
         """
-        if sender in self._own or (sender, number) in self._heard:
-            return
-        self._heard.append((sender, number))
+        if self.is_news(sender, number):
+            self.follow(held)
+
+    def is_news(self, sender: bytes, number: int) -> bool:
+        """Note a message, and return whether it counts: not an own one, nor one that comes twice, or after a later one.
+
+        It may come by two subscriptions, of which one is behind.
+        """
+        if sender in self._own:
+            return False
+        newest = self._heard.pop(sender, None)
+        self._heard[sender] = number if newest is None else max(newest, number)
+        if len(self._heard) > _REMEMBERED:
+            del self._heard[next(iter(self._heard))]
+        return newest is None or number > newest
+
+    def follow(self, held: bool) -> None:
+        """Hold or let go, as somebody else has said."""
         if held and not self.held:
-            self._keep()
+            now = self._steady.now_ns()
+            if now >= self._echo_due:  # else the next `repeat` says it
+                self._echo_due = now + round(AGAIN * 1e9)
+                self._keep()
             self._set(True)
         elif not held and self.held:
             self._set(False)
@@ -163,8 +185,8 @@ class StopLock:
             self._node.get_logger().error(f"STOP is not obeyed here: {error}")
 
     def _on_message(self, message: Bool, info: MessageInfo) -> None:
-        sender: Any = (info["publisher_gid"] or {}).get("data", b"")
-        self._lock.take(message.data, sender, info["publication_sequence_number"])
+        known: Any = info  # rclpy's class allows None, which this network never has
+        self._lock.take(message.data, known["publisher_gid"]["data"], known["publication_sequence_number"])
 
     def _on_matched(self, event: Any) -> None:
         if event.current_count_change > 0:

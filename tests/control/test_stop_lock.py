@@ -139,6 +139,29 @@ def test_a_node_that_may_not_listen_runs_and_says_so(system: System, monkeypatch
     assert said(system, "STOP is not obeyed here: this enclave") == 1
 
 
+def test_what_a_sender_said_before_counts_no_more_however_late_it_comes(system: System) -> None:
+    held = Held(system.node)
+    held.lock.take(True, b"one", 5)
+    held.lock.take(False, b"one", 4)  # by the other subscription, which is a message behind
+    assert held.changes == [True]
+
+
+@pytest.mark.parametrize("last", [True, False])
+def test_a_flood_of_presses_and_releases_is_echoed_a_few_times_a_second(system: System, last: bool) -> None:
+    bases = [system.start(Base), system.start(Base, name="other")]
+    senders: set[bytes] = set()
+    system.node.create_subscription(Bool, TOPIC, lambda _, info: senders.add(info["publisher_gid"]["data"]), 1000)
+    publisher = system.node.create_publisher(Bool, TOPIC, 10)
+    system.run(0.1)
+    for number in range(1000):
+        publisher.publish(Bool(data=number % 2 == last))
+        system.run(0.001)
+    publisher.publish(Bool(data=last))
+    system.run(1.0)
+    assert [each.lock.held for each in bases] == [last, last]
+    assert len(senders) <= 1 + 2 * (2.0 / AGAIN)
+
+
 def test_who_only_looks_says_nothing(system: System) -> None:
     held = Held(system.node, keeps=False)
     held.lock.take(True, b"one", 1)

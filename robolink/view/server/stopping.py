@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
@@ -107,6 +108,8 @@ class Stopping:
         self._zeros: dict[str, tuple[Publisher[Any], type[Any]]] = {}
         self._now = self._changed_at = self._zeros_due = self._again_due = 0.0
         self._listening: list[Handle] = []
+        self._arrived: deque[Any] = deque()
+        self._soon = False
         system.followers.append(self._look)
 
     @property
@@ -174,17 +177,25 @@ class Stopping:
 
     def _on_arrival(self, arrived: Any) -> None:
         """Note what came, on any thread."""
-        with contextlib.suppress(RuntimeError):  # the loop has ended
-            self._loop.call_soon_threadsafe(self._take, arrived)
+        self._arrived.append(arrived)
+        if not self._soon:
+            self._soon = True
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self._take)
 
-    def _take(self, arrived: Any) -> None:
-        try:
-            sample = self._system.context.transport.read(arrived)
-            sender = unpack_attachment(sample.attachment)
-            message = decode(Bool, sample.payload)
-        except RobolinkError:  # nonsense moves nothing
-            return
-        self._lock.take(message.data, sender.gid, sender.sequence)
+    def _take(self) -> None:
+        """Follow the last of what has come: with each in turn, a flood would be followed for long after its end."""
+        self._soon = False
+        last: bool | None = None
+        while self._arrived:
+            with contextlib.suppress(RobolinkError):  # nonsense moves nothing
+                sample = self._system.context.transport.read(self._arrived.popleft())
+                sender = unpack_attachment(sample.attachment)
+                message = decode(Bool, sample.payload)
+                if self._lock.is_news(sender.gid, sender.sequence):
+                    last = message.data
+        if last is not None:
+            self._lock.follow(last)
 
     def _on_change(self, held: bool) -> None:
         self._now = self._changed_at = clocks.monotonic()

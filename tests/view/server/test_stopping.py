@@ -310,6 +310,25 @@ def test_a_press_that_may_not_be_said_is_refused_and_sends_zeros(monkeypatch: py
         until(lambda: not system.node.count_publishers("/cmd_vel"))
 
 
+def test_a_flood_is_followed_to_its_end_without_an_echo_of_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    with shown() as system, system.spinning(), system.client() as page:
+        publisher = system.node.create_publisher(Bool, TOPIC, 10)
+        node, made, echoes = system.source.node, system.source.node.create_publisher, list[str]()
+
+        def counted(cls: Any, topic: str, *more: Any, **named: Any) -> Any:
+            echoes.append(topic)
+            return made(cls, topic, *more, **named)
+
+        monkeypatch.setattr(node, "create_publisher", counted)
+        for number in range(600):
+            publisher.publish(Bool(data=number % 2 == 0))
+        for held in (True, False):
+            forget(page)  # after all that has come
+            publisher.publish(Bool(data=held))
+            told(page, held)
+        assert len(echoes) < 10
+
+
 @pytest.mark.parametrize("payload", [b"", b"\x00\x01\x00", b"\x00\x01\x00\x00\x07", b"nonsense" * 100])
 def test_nonsense_on_the_topic_changes_nothing(payload: bytes) -> None:
     with shown() as system, system.spinning(), system.client() as page:
