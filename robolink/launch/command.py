@@ -47,7 +47,6 @@ def launch(
     shows_view: bool = False,
     enclave: str = "",
     notes: Iterable[str] = (),
-    where_to_look: str = "",
     direct: Direct | None = None,
 ) -> int:
     """Run a system until Ctrl-C, the end of `duration`, or the end of a process that ends the system.
@@ -64,8 +63,7 @@ def launch(
         shows_view: True runs `robolink view` beside the nodes; its end does not end the system.
         enclave: Enclave with whose keys it is recorded, viewed and waited for, where security is on. '' is `/`, and for
             the launcher that of the file's first node that has one.
-        notes: Lines of the launch file's own, printed first.
-        where_to_look: Line about where the system is seen, printed before them; '' prints none.
+        notes: Lines to print first: where the system is seen, and the launch file's own.
         direct: Maker of the director that starts and stops more while the system runs; None has none.
 
     Returns:
@@ -78,9 +76,8 @@ def launch(
     """
     from robolink.supervisor.control.server import Control
 
+    _check_cores(entries)
     launched = processes(entries)
-    for error in core_errors(entries):
-        raise error
     held = {each.name: each.held_by for each in launched if each.held_by}
     members = {each.name: [entry.name for entry in each.entries] for each in launched if each.entries[0].node.process}
     to_run = _to_run(launched, watches)
@@ -99,9 +96,9 @@ def launch(
         director, logs = _director(direct, watches, stack), RunLogs(path.stem)
         supervisor = Supervisor(to_run, output=output, logs=logs, on_event=on_event, start=start, director=director)
         nodes, domain = [each.full_name for each in entries if each.source is not None], _domain()
-        for line in ([where_to_look] if where_to_look else []) + list(notes):
-            supervisor.say(line)
         warn = functools.partial(supervisor.say, severity="WARN")
+        for line in notes:
+            supervisor.say(line)
         for line in (*beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
             warn(line)
         if server is not None:
@@ -117,6 +114,11 @@ def launch(
             parts.append(Figures(supervisor.status, say=supervisor.say))
         watch = waiting(held, supervisor.release, warn, enclave=enclave or _enclave(entries))
         return supervisor.run(duration, [*parts, watch])
+
+
+def _check_cores(entries: Sequence[Entry]) -> None:
+    for error in core_errors(entries):
+        raise error
 
 
 def _domain() -> int:

@@ -77,7 +77,7 @@ class SceneryTrack:
             self._waiting.append((topic, at, encode(message)))
 
     def write(self) -> None:
-        """Write what was noted since the last call. Raises OSError and McapError (a ValueError)."""
+        """Write the messages that came since the last call. Raises OSError and McapError (a ValueError)."""
         waiting, self._waiting = self._waiting, []
         for topic, at, payload in waiting:
             if topic not in self._numbers:

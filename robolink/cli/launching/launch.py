@@ -277,19 +277,19 @@ def _run(ctx: typer.Context, file: LaunchFile, options: Options) -> int:
         shows_view=options.view,
         record="" if record == BY_DATE else record,
         enclave=options.enclave,
-        notes=notes,
-        where_to_look="" if options.view or options.json else _where_to_look(),
+        notes=notes if options.view or options.json else [*_where_to_look(), *notes],
         direct=direct,
     )
 
 
-def _where_to_look() -> str:
-    """Return a line about where the system is seen, for who sits at a terminal without a browser; '' for others."""
+def _where_to_look() -> list[str]:
+    """Return a line about where the system is seen, for who sits at a terminal without a browser; none for others."""
     import sys
 
     from robolink.cli.shared.page import where_to_look
 
-    return where_to_look() if sys.stdout is not None and sys.stdout.isatty() else ""
+    line = where_to_look() if sys.stdout is not None and sys.stdout.isatty() else ""
+    return [line] if line else []
 
 
 def _nothing(file: LaunchFile, notes: Sequence[str]) -> int:

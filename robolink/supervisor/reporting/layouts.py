@@ -102,7 +102,7 @@ class Columns:
         return self._names[name] + b" " * (self._width - len(fit(name, lines=False)))
 
     def _sender(self, name: str, logger: bytes) -> bytes:
-        """Return what the name of a process does not say of a logger's."""
+        """Return a logger's name without that of its process, and a colon; b"" if it is the process's own."""
         own = self._loggers[name]
         if logger == own:
             return b""
