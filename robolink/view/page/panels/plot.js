@@ -231,7 +231,8 @@ class Plot {
       const x = Math.round(toX(at * 1000)) + 0.5;
       context.moveTo(x, TOP);
       context.lineTo(x, bottom);
-      context.fillText(clock(at, step), x, bottom + 13);
+      const text = clock(at, step);
+      context.fillText(text, Math.min(x, context.canvas.width / context.getTransform().a - context.measureText(text).width / 2 - 2), bottom + 13);
     }
     context.stroke();
   }
