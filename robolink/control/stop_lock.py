@@ -101,6 +101,10 @@ class Lock:
         """Note a message, and return whether it counts: not an own one, nor one that comes twice, or after a later one.
 
         It may come by two subscriptions, of which one is behind.
+
+        Args:
+            sender: Global id of its publisher.
+            number: Number that the publisher gave it.
         """
         if sender in self._own:
             return False
@@ -111,7 +115,7 @@ class Lock:
         return newest is None or number > newest
 
     def follow(self, held: bool) -> None:
-        """Hold or let go, as somebody else has said."""
+        """Hold or let go, as somebody else has said in a message with the value `held`."""
         if held and not self.held:
             now = self._steady.now_ns()
             if now >= self._echo_due:  # else the next `repeat` says it
