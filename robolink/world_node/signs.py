@@ -41,6 +41,8 @@ class Signs:
         signs += [each.signs for each in description.robots]
         self._most = min(MOST, max(LEAST, MOST_TOGETHER // max(1, sum(map(len, signs)))))
         self._made: dict[Sign, Marker] = {}
+        self._mosaics: dict[tuple[str | None, str | None], Mosaic] = {}
+        """Pictures by tag and file: many signs may have the same one, and a large one takes half a second."""
 
     def standing(self) -> Iterator[Marker]:
         """Yield the markers of signs of the world and of fixed obstacles, with their poles."""
@@ -86,8 +88,10 @@ class Signs:
         """Return the picture on a sign, with its width and height in metres."""
         face = _surfaces(sign).faces[0]
         assert face.texture is not None
-        shown = mosaic(face.texture, self._most if sign.tag is None else _EVERY_CELL)
-        return shown, (hypot(*face.a), hypot(*face.b))
+        key = sign.tag, sign.image
+        if key not in self._mosaics:
+            self._mosaics[key] = mosaic(face.texture, self._most if sign.tag is None else _EVERY_CELL)
+        return self._mosaics[key], (hypot(*face.a), hypot(*face.b))
 
 
 def _surfaces(sign: Sign, fixed: Surfaces | None = None) -> Surfaces:

@@ -19,7 +19,9 @@ from robolink.sim.colours import hex_of
 from robolink.sim.description import WorldDescription, signed_area
 from robolink.sim.drawing import draw_world
 from robolink.sim.scene import pictures
-from robolink.world_node import Shapes, Simulation
+from robolink.sim.scene.mosaic import Mosaic, mosaic
+from robolink.sim.scene.solids import Picture
+from robolink.world_node import Shapes, Simulation, signs
 from robolink.world_node.shapes import Scenery
 from robolink.world_node.simulation import LATCHED
 from tests.support.spins import spin_until
@@ -231,6 +233,26 @@ def test_messages_are_small(path: Path) -> None:
     scenery = Scenery(load_world(path))
     assert len(encode(scenery.floor())) < 50_000
     assert len(encode(scenery.walls())) < (300_000 if path.stem == "signs" else 60_000)
+
+
+def test_a_picture_on_many_signs_is_made_into_rectangles_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Picture] = []
+
+    def counted(picture: Picture, *options: int) -> Mosaic:
+        made.append(picture)
+        return mosaic(picture, *options)
+
+    monkeypatch.setattr(signs, "mosaic", counted)
+    write_picture(tmp_path / "one.png", [[(255, 0, 0)]])
+    write_picture(tmp_path / "two.png", [[(0, 0, 255), (255, 0, 0)]])
+    file = tmp_path / "world.yaml"
+    names = ["one", "two", "one", "two", "one"]
+    file.write_text(
+        "signs:\n" + "".join(f"  - {{image: {each}.png, pose: [{x}, 1]}}\n" for x, each in enumerate(names))
+    )
+    shown = of(Scenery(load_world(file)).walls().markers, "signs")
+    assert [each.text for each in shown] == names
+    assert len(made) == 2
 
 
 def test_a_picture_that_has_gone_leaves_a_plain_plate(tmp_path: Path) -> None:
