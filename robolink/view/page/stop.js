@@ -16,7 +16,6 @@ addPairs("stop", {
   more: ["{names} and {count} more", "{names} e mais {count}"],
   nobody: ["No robot is known: one that starts now is held.", "Nenhum robô conhecido: um que comece agora fica parado."],
   sending: ["STOP is not confirmed yet: sending it again…", "PARADA ainda não confirmada: enviando de novo…"],
-  refused: ["STOP holds", "PARADA ativa"],
 });
 
 const AGAIN = 250; // ms after which a press that was not told is sent again

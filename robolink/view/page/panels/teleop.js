@@ -84,7 +84,7 @@ class Teleop {
       topics.replaceChildren(...all.map((name) => h("option", { value: name }, name)));
     }
     topics.value = this.topic;
-    const held = app.stopping.held, why = connection.isReadOnly ? words("read-only.why") : held ? words("stop.refused") : !names.includes(this.topic) ? words("teleop.none") : "";
+    const held = app.stopping.held, why = connection.isReadOnly ? words("read-only.why") : held ? words("stop.holds") : !names.includes(this.topic) ? words("teleop.none") : "";
     this.why.textContent = this.blocked = why;
     this.stick.ariaDisabled = String(Boolean(why));
     this.estop.disabled = connection.isReadOnly;
