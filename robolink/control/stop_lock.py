@@ -118,7 +118,8 @@ class Lock:
         """Hold or let go, as somebody else has said in a message with the value `held`."""
         if held and not self.held:
             now = self._steady.now_ns()
-            if now >= self._echo_due:  # else the next `repeat` says it
+            # An own false that is still there must not reach who comes late; else the next `repeat` says it.
+            if self._publisher is not None or now >= self._echo_due:
                 self._echo_due = now + round(AGAIN * 1e9)
                 self._keep()
             self._set(True)
