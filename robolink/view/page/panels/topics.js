@@ -57,7 +57,7 @@ class Topics {
     this.body = h("tbody");
     this.heads = COLUMNS.map((name) => h("th", { class: name }, button(words(`topics.${name}`), null, () => this._sort(name))));
     this.table = h("table", { class: "topics" }, h("thead", {}, h("tr", {}, ...this.heads)), this.body);
-    const scroll = h("div", { class: "scroll" }, this.table);
+    const scroll = this.scroll = h("div", { class: "scroll", onscroll: () => { this.stale = true; } }, this.table);
     this.observer = new ResizeObserver(([{ contentRect }]) => { this.width = contentRect.width; this.stale = true; });
     this.observer.observe(scroll);
     this.tree = new Tree(words, (topic, path) => this.app.emit("pick", topic, path));
@@ -91,7 +91,9 @@ class Topics {
       if (row !== place) this.body.insertBefore(row, place);
       before = row;
     }
-    this.waiting = topics;
+    // Rows out of sight are written when they are scrolled to: the figures of hundreds would cost frames each second.
+    const { scrollTop, clientHeight } = this.scroll, height = this.body.firstChild?.offsetHeight || 20, first = Math.max(0, Math.floor(scrollTop / height) - 2);
+    this.waiting = topics.slice(first, first + Math.ceil(clientHeight / height) + 5);
   }
 
   /** Share the width among the columns, so that names and types are whole where there is room. */
