@@ -42,7 +42,7 @@ FIRST = """(() => { const timer = setInterval(() => {
 """Time from the start of the navigation to the first message that the page has, in milliseconds, to 2 ms."""
 
 OPENINGS = 5
-"""How often the page is opened for that."""
+"""Number of times that the page is opened for that."""
 
 SETTLE = 5.0
 """Seconds after the first data that do not count: modules are compiled, and the view fits."""

@@ -1,4 +1,4 @@
-"""What a real ROS 2 learns of participants of ours whose announcements of endpoints were lost, and sent again."""
+"""Discovery by a real ROS 2 of participants of ours whose announcements of endpoints were lost, and sent again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `robolink launch` writes to a terminal, byte by byte: a real one, with real nodes."""
+"""Bytes that `robolink launch` writes to a terminal: a real one, with real nodes."""
 
 from __future__ import annotations
 

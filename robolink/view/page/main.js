@@ -204,7 +204,7 @@ function shortcut(event) {
   const acts = { "?": help, "/": () => find(app), ",": () => app.timeline.step(-1), ".": () => app.timeline.step(1), d: drive, f: inWorld, t: turnTheme, p: () => app.timeline.toggle(), l: () => app.timeline.goLive(), " ": () => app.stopping.press() };
   if (!app.isBag && !app.isLearn) Object.assign(acts, { g: inWorld, i: inWorld, r: () => document.getElementById("record").click() });
   const act = /^[1-9]$/.test(event.key) ? () => app.layout.focus(Number(event.key) - 1) : acts[event.key];
-  // Space on a button that was reached by the keyboard is that button's; one that was clicked before is no reason not to stop.
+  // Space on a button that was reached by the keyboard is that button's; one that was clicked before must not keep it from stopping.
   if (!act || (event.key === " " && event.target !== clicked && event.target.matches("button, summary"))) return;
   event.preventDefault();
   if (!event.repeat || event.key === " ") act(event);

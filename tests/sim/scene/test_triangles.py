@@ -22,7 +22,7 @@ SIDE = 0.01
 def covered(
     triangles: Iterable[Triangle], corner: Point, size: tuple[int, int], edge: float = -1e-9
 ) -> npt.NDArray[np.int32]:
-    """How many triangles lie over the middle of each pixel; with a positive `edge` not those whose edge is there."""
+    """Return the number of triangles over the middle of each pixel, but with a positive `edge` not on their edges."""
     rows, columns = size
     x = corner[0] + (np.arange(columns) + 0.5) * SIDE
     y = corner[1] + (np.arange(rows) + 0.5)[:, None] * SIDE

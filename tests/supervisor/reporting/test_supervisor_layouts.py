@@ -1,4 +1,4 @@
-"""How a line looks: columns on a terminal, the name in brackets for programs and for who chose ROS's format."""
+"""Layouts of a line: columns on a terminal, the name in brackets for programs and for who chose ROS's format."""
 
 from __future__ import annotations
 

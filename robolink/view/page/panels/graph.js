@@ -142,7 +142,7 @@ class Graph {
     if (key) this.detail.replaceChildren(...this._ends(key));
   }
 
-  /** What is told of a node or topic: its ends, with their types or their quality of service. */
+  /** The ends of a node or topic, with their types or their quality of service. */
   _ends(key) {
     const { words, connection: { graph } } = this.app, isNode = key.startsWith("node"), name = key.slice(isNode ? 4 : 5);
     const of = (side) => (isNode ? [...graph[side]].filter(([, nodes]) => nodes.includes(name)).map(([topic]) => [`topic${topic}`, topic, graph.types.get(topic), graph.qos.get(`${side} ${topic} ${name}`)])

@@ -93,9 +93,9 @@ function order(columns) {
     for (const column of round % 2 ? columns : columns.toReversed()) {
       for (const each of column) {
         const near = [...(round % 2 ? each.left : each.right), ...(each.beside ?? [])];
-        each.wish = near.length ? near.reduce((sum, { place: at }) => sum + at, 0) / near.length : each.place;
+        each.ideal = near.length ? near.reduce((sum, { place: at }) => sum + at, 0) / near.length : each.place;
       }
-      column.sort((a, b) => a.wish - b.wish);
+      column.sort((a, b) => a.ideal - b.ideal);
       column.forEach((each, i) => { each.place = (i + 0.5) / column.length; });
     }
   }
