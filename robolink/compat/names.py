@@ -12,8 +12,9 @@ launch launch.bases some_entities_type some_substitutions_type substitution
 launch launch.sources invalid_launch_file_error launch_description launch_description_source
 launch launch.sources launch_description_sources
 launch launch launch_introspector launch_service
-launch launch.actions descriptions descriptions.executable
-launch.actions launch.actions emit_event execute_local execute_process for_loop group_action log_info
+launch launch.processes descriptions descriptions.executable
+launch.actions launch.actions emit_event for_loop group_action log_info
+launch.actions launch.processes execute_local execute_process
 launch.actions launch.actions opaque_coroutine opaque_function register_event_handler shutdown_action timer_action
 launch.actions launch.actions unregister_event_handler
 launch.actions launch.settings append_environment_variable declare_launch_argument pop_environment
