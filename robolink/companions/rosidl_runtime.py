@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import tempfile
+import warnings
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -16,7 +17,15 @@ from robolink.interfaces.standard import INTERFACES
 from robolink.message import FieldType, Message, message_type
 from robolink.message.convert import UnknownFieldError, converted, explain_value
 from robolink.message.show import Style, as_csv, as_yaml, shown_data
-from robolink.message.slot_types import NamespacedType
+from robolink.message.slot_types import (
+    IDL_NAMES,
+    AbstractGenericString,
+    AbstractNestedType,
+    AbstractWString,
+    Array,
+    BoundedSequence,
+    NamespacedType,
+)
 from robolink.message.text import text_of
 from robolink.workspace.interfaces import WORKSPACE_TYPES, use_interfaces
 
@@ -135,9 +144,15 @@ class Namespaced(Protocol):
 def import_message_from_namespaced_type(message_type: Namespaced) -> Any:
     """Return the class of `message_type`; also of the parts of an action, ``Fibonacci_FeedbackMessage``.
 
+    An array or a sequence stands for its elements, with a DeprecationWarning.
+
     Raises TypeNotFoundError (an AttributeError), PackageOfTypeNotFoundError (a ModuleNotFoundError), both
     NotFoundError, or MessageError (a ValueError) if the definition is wrong.
     """
+    if isinstance(message_type, AbstractNestedType):
+        text = "Passing objects containing a NamespacedType is deprecated, please pass a NamespacedType object directly"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        return import_message_from_namespaced_type(message_type.value_type)
     full = "/".join((*message_type.namespaces, message_type.name))
     kind = message_type.namespaces[1] if len(message_type.namespaces) > 1 else "msg"
     if kind not in KINDS:
@@ -212,14 +227,38 @@ def message_to_ordereddict(
     return ordered
 
 
-def get_message_slot_types(msg: Any) -> OrderedDict[str, FieldType]:
-    """Return the type of each field of `msg`, a message or its class, by name."""
-    return OrderedDict(message_type(msg if isinstance(msg, type) else type(msg)).__ros_fields__)
+def get_message_slot_types(msg: Any) -> OrderedDict[str, Any]:
+    """Return the type of each field of `msg`, a message or its class, by name, as rosidl_parser.definition has it."""
+    return OrderedDict(zip(msg.get_fields_and_field_types(), msg.SLOT_TYPES, strict=True))
 
 
 def _message(msg: Any) -> Any:
     message_type(type(msg))
     return msg
+
+
+def _fields_of(msg: Any) -> Mapping[str, FieldType]:
+    """Return the fields of a message, also of a class of others that only describes itself as rosidl's do."""
+    if not hasattr(msg, "__ros_fields__") and hasattr(msg, "SLOT_TYPES"):
+        return {name: _kind_of(slot) for name, slot in get_message_slot_types(msg).items()}
+    return message_type(type(msg)).__ros_fields__
+
+
+def _kind_of(slot: Any) -> FieldType:
+    """Return the field type that `robolink.message.slot_types.slot_type` makes a slot type of."""
+    if isinstance(slot, AbstractNestedType):
+        element = _kind_of(slot.value_type)
+        shape = "array" if isinstance(slot, Array) else "bounded" if isinstance(slot, BoundedSequence) else "sequence"
+        size = getattr(slot, "size", getattr(slot, "maximum_size", 0))
+        return FieldType(element.base, element.message, element.string_bound, shape, size)
+    if isinstance(slot, NamespacedType):
+        cls = import_message_from_namespaced_type(slot)
+        return FieldType(cls.__ros_type__, cls)
+    if isinstance(slot, AbstractGenericString):
+        base = "wstring" if isinstance(slot, AbstractWString) else "string"
+        return FieldType(base, string_bound=getattr(slot, "maximum_size", 0))
+    names = {idl: name for name, idl in IDL_NAMES.items() if name != "char"}  # a uint8, too
+    return FieldType(names.get(slot.typename, slot.typename))
 
 
 def _ordered(data: Any) -> Any:
@@ -263,7 +302,8 @@ def get_interface_path(interface_name: str) -> str:
     """Return the path of the file that defines a type.
 
     A workspace's file is the user's own; that of a standard type is written for this process, and removed after it.
-    A type that only an .idl file defines is written as text, too.
+    A type that only an .idl file defines is written as text, too; the .idl file itself is what the name with ``.idl``
+    at its end means, where the package has one.
 
     Args:
         interface_name: Name such as ``std_msgs/msg/String``, with or without ``.msg`` at its end.
@@ -277,13 +317,13 @@ def get_interface_path(interface_name: str) -> str:
         raise MessageError(f"Invalid name '{interface_name}'. Expected a name as std_msgs/msg/String")
     package, kind, last = parts
     short, dot, suffix = last.partition(".")
-    if dot and suffix != kind:
-        raise NotFoundError("interface file", interface_name, [f"{package}/{kind}/{short}.{kind}"])
     use_interfaces()
     added = INTERFACES.get(package)
     folders = [*WORKSPACE_TYPES.folders(package, kind), *([added / kind] if added is not None else ())]
-    own = (place / f"{short}.{kind}" for place in folders)
-    path = next((each for each in own if each.is_file()), None)
+    own = (place / f"{short}.{suffix or kind}" for place in folders)
+    path = next((each for each in own if each.is_file()), None) if suffix in ("", kind, "idl") else None
+    if path is None and dot and suffix != kind:
+        raise NotFoundError("interface file", interface_name, [f"{package}/{kind}/{short}.{kind}"])
     return str(path if path is not None else _written(f"{package}/{kind}/{short}", kind))
 
 
@@ -371,7 +411,7 @@ class _Filling:
 
     def changes(self, msg: Any, values: Any, where: str, path: tuple[str | int, ...] = ()) -> dict[str, Any]:
         """Return the new value of each field that is named."""
-        fields = message_type(type(msg)).__ros_fields__
+        fields = _fields_of(msg)
         if not isinstance(values, Mapping):
             kind = type(values).__name__
             raise EncodeError(f"Value '{values}' is expected to be a dictionary but is a {kind} ({where})")

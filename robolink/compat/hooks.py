@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any, TypeAlias
 
-from robolink.compat.maker import TOPS, hidden, room_fill, room_of
+from robolink.compat.maker import TOPS, defined_in, fill_private, hidden, room_fill, room_of
 from robolink.extensions.optional import is_here
 from robolink.interfaces import KINDS
 from robolink.interfaces.standard import INTERFACES
@@ -107,10 +107,17 @@ def workspace_types(fullname: str) -> Fill | None:
     real = None if dot else FINDER.real(top)
     if real is not None and real.loader is not None:  # a folder that is not a package has none
         return None
-    fill = None if private else _of_workspace(fullname)
+    fill = _private(fullname) if private else _of_workspace(fullname)
     if fill is None and top in INTERFACES.added():  # last: reading entry points takes ten milliseconds
         return room_fill(fullname)
     return fill
+
+
+def _private(fullname: str) -> Fill | None:
+    """Return the function that fills `my_msgs.msg._level`, where rosidl defines a type of a workspace."""
+    parent, _, last = fullname.rpartition(".")
+    types = defined_in(last, dir(sys.modules.get(parent)))
+    return functools.partial(fill_private, fullname, types) if types else None
 
 
 def _of_workspace(fullname: str) -> Fill | None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
-from robolink.compat.names import LAUNCH_ROOMS, ROOMS, instead_of, snake_case
+from robolink.compat.names import ROOMS, instead_of, snake_case
 from robolink.exceptions import closest
 from robolink.interfaces import ACTION_PARTS, KINDS
 from robolink.interfaces.standard import packages, set_home, types_of
@@ -61,7 +61,7 @@ def room_fill(fullname: str) -> Fill:
     room = room_of(fullname)
     parent, _, last = fullname.rpartition(".")
     if last.startswith("_") and room_of(parent).startswith(f"{TYPES}."):
-        return functools.partial(_fill_private, fullname, _defined_in(fullname))
+        return functools.partial(fill_private, fullname, _defined_in(fullname))
     if not room or not _is_there(room):
         raise LackingModuleError(fullname, functools.partial(_modules_beside, fullname), instead_of(fullname))
     return functools.partial(_put, fullname, room)
@@ -196,14 +196,14 @@ def _lacked(fullname: str, module: ModuleType, own: Callable[[str], Any] | None,
 
 
 def _inner(module: ModuleType, name: str) -> str:
-    """Return ROS 2's name of a module within a module of launch, which imports all of its modules itself; '' for none.
+    """Return ROS 2's name of a module within a module, as ``from cv_bridge import core`` needs it; '' for none.
 
-    One module of robolink's may have several of ROS 2's names.
+    Python itself looks below the name that the module has at robolink. One module may have several of ROS 2's names.
     """
-    if name.startswith("_"):
+    if name.startswith("__"):
         return ""
-    names = [each for each, found in sys.modules.copy().items() if found is module]
-    return next((f"{each}.{name}" for each in names if f"{each}.{name}" in LAUNCH_ROOMS), "")
+    names = [f"{each}.{name}" for each, found in sys.modules.copy().items() if found is module]
+    return next((each for each in names if each in ROOMS or _types_in(each)), "")
 
 
 def _home_of(fullname: str, name: str) -> str:
@@ -223,16 +223,31 @@ def _fill_package(module: ModuleType) -> None:
 
 
 def _defined_in(fullname: str) -> list[str]:
-    """Return the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, usually one."""
-    package, kind, last = [*fullname.split("."), "", ""][:3]
-    types = types_of(package, kind) if fullname.count(".") == 2 else ()
-    found = [each for each in types if f"_{snake_case(each)}" == last]
+    found = _types_in(fullname)
     if not found:
-        raise LackingModuleError(fullname, lambda: [f"_{snake_case(each)}" for each in types])
+        package, kind, _ = [*fullname.split("."), "", ""][:3]
+        raise LackingModuleError(fullname, lambda: [f"_{snake_case(each)}" for each in types_of(package, kind)])
     return found
 
 
-def _fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> None:
+def _types_in(fullname: str) -> list[str]:
+    """Return the types that rosidl defines in ``geometry_msgs.msg._twist``: those so spelled, usually one."""
+    package, kind, last = [*fullname.split("."), "", ""][:3]
+    is_private = fullname.count(".") == 2 and last.startswith("_")
+    return defined_in(last, types_of(package, kind)) if is_private else []
+
+
+def defined_in(private: str, types: Iterable[str]) -> list[str]:
+    """Return those of the `types` that rosidl defines in the module `private` of their package.
+
+    >>> defined_in("_twist", ["Twist", "TwistStamped"])
+    ['Twist']
+    """
+    return [each for each in types if f"_{snake_case(each)}" == private]
+
+
+def fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> None:
+    """Fill the module `fullname`, in which rosidl defines `types`, with them and their parts."""
     public = importlib.import_module(fullname.rpartition(".")[0])
     for short in types:
         cls = getattr(public, short)

@@ -127,8 +127,9 @@ ROOMS = {
     "rosbag2_py": "robolink.companions.rosbag2_py",
     **{
         f"rosbag2_py.{name}": "robolink.companions.rosbag2_py._files"
-        for name in ("_info", "_reader", "_writer", "_reindexer", "_message_definitions")
+        for name in ("_info", "_reader", "_writer", "_reindexer")
     },
+    "rosbag2_py._message_definitions": "robolink.companions.rosbag2_py._definitions",
     "rosbag2_py._compression_options": "robolink.companions.rosbag2_py._storage",
     "diagnostic_updater": "robolink.companions.diagnostic_updater",
     "nav2_common": "",

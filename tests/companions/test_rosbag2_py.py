@@ -344,6 +344,43 @@ def test_definitions_are_those_of_installed_types() -> None:
     assert (unknown.encoding, unknown.encoded_message_definition) == ("unknown", "")
 
 
+BASIC_IDL = "module kit { module msg { struct Basic { float x; }; }; };\n"
+WHOLE_IDL = '#include "kit/msg/Basic.idl"\nmodule kit { module msg { struct Whole { kit::msg::Basic a; }; }; };\n'
+LINE = "=" * 80 + "\n"
+
+
+def test_definitions_are_the_files_of_a_workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, text in {
+        "msg/Part.msg": "# metres\nfloat32 c\n",
+        "msg/Set.msg": "Header header  # when\nPart[<=2] parts\nkit/Part first\nint8 ON=1\n",
+        "msg/Basic.idl": BASIC_IDL,
+        "msg/Whole.idl": WHOLE_IDL,
+        "srv/Ask.srv": "Part p\n---\nBasic b\n",
+        "srv/Lacks.srv": "Nothing p\n---\n",
+    }.items():
+        (tmp_path / "interfaces/kit" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "interfaces/kit" / name).write_text(text)
+    monkeypatch.setenv("ROBOLINK_WORKSPACE", str(tmp_path))
+    full = rosbag2_py.LocalMessageDefinitionSource().get_full_text
+    found = full("kit/Set")
+    assert found.encoding == "ros2msg"
+    text = "Header header  # when\nPart[<=2] parts\nkit/Part first\nint8 ON=1\n"
+    assert found.encoded_message_definition.startswith(f"{text}\n{LINE}MSG: kit/Part\n# metres\nfloat32 c\n")
+    assert f"\n{LINE}MSG: std_msgs/Header\n" in found.encoded_message_definition
+    assert found.type_hash.startswith("RIHS01_")
+    of_idl = full("kit/msg/Whole")
+    assert of_idl.encoding == "ros2idl"
+    whole = f"{LINE}IDL: kit/msg/Whole\n{WHOLE_IDL}\n{LINE}IDL: kit/msg/Basic\n{BASIC_IDL}"
+    assert of_idl.encoded_message_definition == whole
+    asked = full("kit/srv/Ask").encoded_message_definition
+    assert asked.startswith(
+        f"{LINE}SRV: kit/srv/Ask\nPart p\n---\nBasic b\n\n{LINE}MSG: kit/Basic\n\n{LINE}IDL: kit/Basic"
+    )
+    assert asked.endswith(f"\n{LINE}MSG: kit/Part\n# metres\nfloat32 c\n")
+    for unknown in ("kit/srv/Lacks", "kit/srv/Nothing", "kit/Nothing", "kit", "../kit/Set"):
+        assert (full(unknown).encoding, full(unknown).encoded_message_definition) == ("unknown", "")
+
+
 def test_plugins_are_named() -> None:
     assert rosbag2_py.get_registered_readers() == rosbag2_py.get_registered_writers() == {"mcap", "sqlite3"}
     assert rosbag2_py.get_registered_compressors() == {"zstd"}

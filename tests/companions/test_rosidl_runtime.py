@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robolink.companions.rosidl_runtime import (
+    _kind_of,
     get_action,
     get_action_interfaces,
     get_interface,
@@ -43,7 +44,8 @@ from robolink.interfaces.std_srvs.srv import SetBool
 from robolink.message import encode
 from robolink.message.convert import UnknownFieldError
 from robolink.message.definition import parse
-from robolink.message.slot_types import NamespacedType
+from robolink.message.slot_types import BasicType, BoundedSequence, NamespacedType, UnboundedString
+from robolink.workspace import VARIABLE
 
 
 def test_a_message_as_text() -> None:
@@ -247,6 +249,16 @@ def test_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         get_interfaces(["std_mgs"])
 
 
+def test_the_idl_file_of_a_definition(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "interfaces/depths/msg"
+    folder.mkdir(parents=True)
+    (folder / "Depth.msg").write_text("float32 value\n")
+    (folder / "Depth.idl").write_text("module depths { module msg { struct Depth { float value; }; }; };\n")
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    assert get_interface_path("depths/msg/Depth.idl") == str(folder / "Depth.idl")
+    assert get_interface_path("depths/msg/Depth") == str(folder / "Depth.msg")
+
+
 @pytest.mark.parametrize("name", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/Twist.msg", "std_srvs/srv/SetBool"])
 def test_the_file_of_a_definition(name: str) -> None:
     path = Path(get_interface_path(name))
@@ -272,3 +284,46 @@ def test_the_file_of_a_definition(name: str) -> None:
 def test_a_definition_that_is_not_there(name: str, kind: type[Exception]) -> None:
     with pytest.raises((kind, MessageError, NotFoundError)):
         get_interface_path(name)
+
+
+class Described:
+    """A class of a program's own that describes its fields as rosidl's do."""
+
+    SLOT_TYPES = (
+        NamespacedType(("std_msgs", "msg"), "Header"),
+        BasicType("double"),
+        BoundedSequence(UnboundedString(), 2),
+    )
+
+    def __init__(self) -> None:
+        self.header, self.range, self.names = Header(), 0.0, [""]
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        return {"header": "std_msgs/Header", "range": "double", "names": "sequence<string, 2>"}
+
+
+def test_a_class_that_describes_itself_is_filled_as_a_message() -> None:
+    message = Described()
+    (setter,) = set_message_fields(
+        message, {"header": "auto", "range": 2, "names": ["a", "b"]}, expand_header_auto=True
+    )
+    setter(Time(sec=3))
+    assert (message.header.stamp.sec, message.range, message.names) == (3, 2.0, ["a", "b"])
+    with pytest.raises(EncodeError, match="names"):
+        set_message_fields(message, {"names": ["a", "b", "c"]})
+    with pytest.raises(AttributeError, match="rang"):
+        set_message_fields(message, {"rang": 2})
+
+
+@pytest.mark.parametrize("kind", [Imu, JointState, Byte, Header, PoseArray])
+def test_slot_types_are_rosidls_and_lead_back_to_the_fields(kind: type[Any]) -> None:
+    slots = get_message_slot_types(kind())
+    assert tuple(slots.values()) == kind.SLOT_TYPES
+    assert {name: _kind_of(each) for name, each in slots.items()} == dict(kind.__ros_fields__)
+
+
+def test_the_class_of_the_elements_of_a_sequence() -> None:
+    with pytest.warns(DeprecationWarning, match="NamespacedType object directly"):
+        found = import_message_from_namespaced_type(BoundedSequence(NamespacedType(("std_msgs", "msg"), "Header"), 3))
+    assert found is Header

@@ -101,6 +101,27 @@ def test_private_modules_have_the_parts_of_services_and_actions() -> None:
 
 
 @pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(
+            "rosidl_runtime_py.utilities",
+            "ament_index_python.packages",
+            "cv_bridge.core",
+            "image_geometry.cameramodels",
+        ),
+        *("tf2_geometry_msgs.tf2_geometry_msgs", "nav2_simple_commander.utils", "rosbag2_py._reader"),
+        *("sensor_msgs.msg._image", "std_srvs.srv._set_bool"),
+    ],
+)
+def test_a_module_is_imported_from_its_package(name: str) -> None:
+    package, _, module = name.rpartition(".")
+    scope: dict[str, Any] = {}
+    exec(f"from {package} import {module} as found", scope)
+    assert dir(scope["found"]) == dir(importlib.import_module(name))
+
+
+@pytest.mark.usefixtures("compat")
 @pytest.mark.parametrize("name", ["launch.frontend.parse_substitution", "launch_testing.parametrize"])
 def test_a_function_stays_one_though_its_module_has_its_name(name: str) -> None:
     package, _, function = name.rpartition(".")

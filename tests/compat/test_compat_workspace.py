@@ -46,6 +46,22 @@ def test_types_of_the_workspace_of_a_file_are_found(workspace: Path) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+def test_types_are_found_where_rosidl_defines_them(workspace: Path) -> None:
+    (workspace / "interfaces/my_levels/action").mkdir()
+    (workspace / "interfaces/my_levels/action/FillUp.action").write_text("---\n---\nfloat64 height\n")
+    (workspace / "tests/test_levels.py").write_text(
+        "from my_levels.msg._level import Level\nfrom my_levels.action import _fill_up\n"
+        "from my_levels.action._fill_up import FillUp_FeedbackMessage\n"
+    )
+    module: Any = load_file(workspace / "tests/test_levels.py")
+    assert module.Level(height=2.0).height == 2.0
+    assert module.FillUp_FeedbackMessage is module._fill_up.FillUp.Impl.FeedbackMessage
+    (workspace / "tests/test_none.py").write_text("from my_levels.msg._levle import Level")
+    with pytest.raises(ImportError, match="_levle"):
+        load_file(workspace / "tests/test_none.py")
+
+
+@pytest.mark.usefixtures("compat")
 def test_types_of_nobody_and_of_other_workspaces_are_not(workspace: Path, tmp_path: Path) -> None:
     (tmp_path / "elsewhere/test_levels.py").write_text(USES)
     with pytest.raises(ImportError, match="No module named 'my_levels'"):

@@ -1,8 +1,8 @@
 """Bags in Python: the API of ROS 2's rosbag2_py, with readers, writers, metadata, conversion, recorder and player."""
 
+from robolink.companions.rosbag2_py._definitions import LocalMessageDefinitionSource
 from robolink.companions.rosbag2_py._files import (
     Info,
-    LocalMessageDefinitionSource,
     Reindexer,
     SequentialCompressionReader,
     SequentialCompressionWriter,

@@ -40,16 +40,6 @@ from robolink.message import type_hash
 from robolink.utilities import get_default_context
 
 
-class LocalMessageDefinitionSource:
-    """Source of the definitions of types that are installed here or are in the workspace."""
-
-    def get_full_text(self, root_topic_type: str) -> MessageDefinition:
-        """Return the definition of a type with all that it uses: empty, encoding unknown, for an unknown type."""
-        found = described(BagTopic("", root_topic_type))
-        encoding = "ros2msg" if found.message_definition else "unknown"
-        return MessageDefinition(root_topic_type, encoding, found.message_definition, found.type_hash)
-
-
 def described(topic: BagTopic) -> BagTopic:
     """Return a topic with the definition and the hash of its type, if it is known here."""
     try:

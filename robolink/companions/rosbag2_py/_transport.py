@@ -268,6 +268,7 @@ class _Playing:
     """Player with the session that it is made in."""
 
     def __init__(self, bags: Bags, options: PlayOptions, level: LoggingSeverity, name: str) -> None:
+        self._until = options.playback_until_timestamp
         settings = settings_of(options)
         paths = [each.uri for each in ([bags] if isinstance(bags, StorageOptions) else bags)]
         self.started = threading.Event()
@@ -286,6 +287,7 @@ class _Playing:
     def start(self) -> None:
         """Begin to play, also again."""
         self.served.start()
+        self.session.node.get_logger().info(f"Playback until timestamp: {self._until}")  # programs wait for this line
         self.started.set()
 
     def close(self) -> None:
