@@ -19,15 +19,10 @@ from robolink.launch.lookup import command_of, source_of
 from robolink.launch.ros.launch.actions import ExecuteLocal, Shutdown
 from robolink.launch.ros.launch.bases import LaunchContext, LaunchError, Place, Substitution
 from robolink.launch.ros.launch.utilities import boolean, performed
-from robolink.launch.ros.launch_ros.actions import (
-    NAMESPACE,
-    REMAPS,
-    ComposableNodeContainer,
-    LoadComposableNodes,
-    Node,
-    joined,
-)
+from robolink.launch.ros.launch_ros.components import ComposableNodeContainer, LoadComposableNodes
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
+from robolink.launch.ros.launch_ros.node import Node
+from robolink.launch.ros.launch_ros.settings import NAMESPACE, REMAPS, joined
 from robolink.launch.ros.programs import Program, component_of, parameters_of, program_of, texts_of
 from robolink.supervisor.policy import NO_LIMIT
 from robolink.system.processes import SHELL, own_command, split_words

@@ -16,8 +16,8 @@ from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, NotFoundError, closest, nearest
 from robolink.launch.ros.launch.bases import LaunchContext, LaunchError
 from robolink.launch.ros.launch.utilities import performed, read_otherwise
-from robolink.launch.ros.launch_ros.actions import PARAMETERS
 from robolink.launch.ros.launch_ros.descriptions import Parameter, ParameterFile, evaluated
+from robolink.launch.ros.launch_ros.settings import PARAMETERS
 from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.system.terminal import shown
 from robolink.workspace import (

@@ -18,8 +18,8 @@ from robolink.launch.ros.launch.actions import EmitEvent, ExecuteLocal, TimerAct
 from robolink.launch.ros.launch.bases import BaseEventHandler, Event, LaunchDescriptionEntity, entities_in
 from robolink.launch.ros.launch.event_handlers import OnProcessIO, OnShutdown
 from robolink.launch.ros.launch.utilities import is_true
-from robolink.launch.ros.launch_ros.actions import LifecycleNode, transitions
 from robolink.launch.ros.launch_ros.events import ChangeState, StateTransition
+from robolink.launch.ros.launch_ros.lifecycle import LifecycleNode, transitions
 from robolink.launch.ros.surroundings import roots_of, surroundings
 from robolink.launch.ros.visit import Started, Visit
 from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
