@@ -15,11 +15,17 @@ from robolink.clock import ROSClock
 from robolink.companions.message_filters import (
     ApproximateTimeSynchronizer,
     Cache,
+    Chain,
+    DeltaFilter,
+    InputAligner,
+    PathDeltaFilter,
     SimpleFilter,
     Subscriber,
+    TimeSequencer,
     TimeSynchronizer,
-    nearest_together,
 )
+from robolink.companions.message_filters.input_aligner import QueueStatus
+from robolink.companions.message_filters.synchronizers import nearest_together
 from robolink.duration import Duration
 from robolink.executors import SingleThreadedExecutor
 from robolink.impl.log_output import Record
@@ -143,8 +149,8 @@ def test_a_stamp_before_0_ends_no_node(log_lines: list[Record]) -> None:
     TimeSynchronizer(inputs, 5).registerCallback(lambda *them: exactly.append(them))
     nearly.registerCallback(lambda *_: pytest.fail("these have no time"))
     for each in inputs:
-        each.signalMessage(stamped(-1))
         each.signalMessage(stamped(-2 * 10**9))
+        each.signalMessage(stamped(-1))
     assert [len(them) for them in exactly] == [2, 2]
     assert cache.getLast() is None
     assert ["is left out for its stamp" in each.message for each in log_lines] == [True, True]
@@ -282,3 +288,193 @@ def test_by_topics_in_a_system(virtual: Context, executor: SingleThreadedExecuto
             publisher.publish(stamped(tick * 10**9 + offset * 10**7))
     spin_until(executor, lambda: len(collected.sets) == 5)
     assert collected.sets == [(tick * 10**9, tick * 10**9 + 10**7) for tick in range(5)]
+
+
+def test_a_set_earlier_than_one_that_went_out_is_dropped() -> None:
+    inputs = [SimpleFilter(), SimpleFilter()]
+    synchronizer = TimeSynchronizer(inputs, 10)
+    collected = Collected(synchronizer)
+    inputs[0].signalMessage(stamped(1))
+    inputs[1].signalMessage(stamped(2))
+    inputs[0].signalMessage(stamped(2))
+    assert collected.sets == [(2, 2)]
+    inputs[1].signalMessage(stamped(1))
+    assert collected.sets == [(2, 2)]
+    assert [list(queue) for queue in synchronizer.queues] == [[], [1]]
+
+
+def test_an_offset_of_a_topic_is_taken_off_its_stamps() -> None:
+    inputs = [SimpleFilter(), SimpleFilter()]
+    collected = Collected(ApproximateTimeSynchronizer(inputs, 5, 1e-9 * 3, queue_offset=[0, 100]))
+    inputs[0].signalMessage(stamped(10))
+    inputs[1].signalMessage(stamped(10))
+    inputs[1].signalMessage(stamped(111))
+    assert collected.sets == [(10, 111)]
+
+
+def test_the_fourth_argument_of_older_programs_allows_messages_without_a_header(virtual: Context) -> None:
+    source = SimpleFilter()
+    seen: list[Any] = []
+    synchronizer = ApproximateTimeSynchronizer([source], 5, 0.1, True)
+    synchronizer.registerCallback(seen.append)
+    source.signalMessage(String(data="a"))
+    assert (synchronizer.allow_headerless, seen) == (True, [String(data="a")])
+
+
+def by_data(message: Any) -> Time:
+    return Time(nanoseconds=int(message.data))
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda fs: TimeSynchronizer(fs, 5, time_getter=by_data),
+        lambda fs: ApproximateTimeSynchronizer(fs, 5, 0.1, time_getter=by_data),
+    ],
+)
+def test_the_time_may_be_a_function_of_the_message(make: Any) -> None:
+    inputs, seen = [SimpleFilter(), SimpleFilter()], list[Any]()
+    cache = Cache(inputs[0], 5, time_getter=by_data)
+    make(inputs).registerCallback(lambda *them: seen.append(them))
+    for each in inputs:
+        each.signalMessage(String(data="7"))
+    assert seen == [(String(data="7"), String(data="7"))]
+    assert cache.getLatestTime() == by_data(String(data="7")) == cache.getLastestTime()
+
+
+def test_exact_sets_need_a_time() -> None:
+    source = SimpleFilter()
+    TimeSynchronizer([source], 5)
+    with pytest.raises(ValueError, match="String has no header with a stamp: pass a time_getter"):
+        source.signalMessage(String(data="a"))
+
+
+def test_a_removed_callback_gets_nothing_and_its_number_is_not_given_again() -> None:
+    source, seen = SimpleFilter(), list[str]()
+    first = source.registerCallback(lambda _: seen.append("first"))
+    source.registerCallback(lambda _: seen.append("second"))
+    source.unregisterCallback(first)
+    source.unregisterCallback(first)
+    source.registerCallback(lambda _: seen.append("third"))
+    source.signalMessage(1)
+    assert seen == ["second", "third"]
+
+
+def test_a_chain_hands_on_from_filter_to_filter() -> None:
+    source, seen = SimpleFilter(), list[Any]()
+    chain = Chain(source)
+    chain.registerCallback(seen.append)
+    source.signalMessage(String(data="a"))
+    changes, lengths = PathDeltaFilter(["data"]), DeltaFilter([lambda message: len(message.data)])
+    chain.addFilter(changes)
+    chain.addFilter(lengths)
+    for text in ("b", "b", "c", "cc"):
+        source.signalMessage(String(data=text))
+    assert [each.data for each in seen] == ["a", "b", "cc"]
+    assert (chain.getFilter(0), chain.getFilter(1)) == (changes, lengths)
+    with pytest.raises(KeyError):
+        chain.getFilter(2)
+    with pytest.raises(RuntimeError, match="Already connected"):
+        chain.connectInput(source)
+
+
+def test_only_changes_of_fields_pass() -> None:
+    source, seen = SimpleFilter(), list[Any]()
+    PathDeltaFilter(["header.frame_id", "point.x"], source).registerCallback(seen.append)
+    messages = [stamped(at, frame) for at, frame in enumerate("aabba")]
+    for each in messages:
+        source.signalMessage(each)
+    assert stamps_of(seen) == (0, 2, 4)
+
+
+def test_fields_that_cannot_be_compared_are_named() -> None:
+    by_path = PathDeltaFilter(["header.stmp"])
+    by_path.add(stamped(1))
+    with pytest.raises(RuntimeError, match=r"Header has no field 'stmp' \(path 'header.stmp'\)"):
+        by_path.add(stamped(2))
+    by_value = DeltaFilter([lambda message: message.header])
+    by_value.add(stamped(1))
+    with pytest.raises(TypeError, match="fields of bool, int, float, str, not of Header"):
+        by_value.add(stamped(2))
+    with pytest.raises(RuntimeError, match="already has an incoming connection"):
+        DeltaFilter([], SimpleFilter()).connectInput(SimpleFilter())
+
+
+def aligned(timeout: float, count: int) -> tuple[InputAligner, list[SimpleFilter], list[tuple[int, ...]]]:
+    inputs, seen = [SimpleFilter() for _ in range(count)], list[tuple[int, ...]]()
+    aligner = InputAligner(Duration(nanoseconds=timeout), *inputs)
+    for index in range(count):
+        aligner.registerCallback(index, lambda message, at: seen.append((at, *stamps_of([message]))), index)
+    return aligner, inputs, seen
+
+
+def test_messages_of_several_topics_come_in_the_order_of_their_stamps() -> None:
+    aligner, inputs, seen = aligned(10, 2)
+    for index, stamp in ((0, 5), (1, 3), (0, 8), (1, 9)):
+        inputs[index].signalMessage(stamped(stamp))
+    aligner.setInputPeriod(0, Duration(nanoseconds=4))
+    aligner.setInputPeriod(1, Duration(nanoseconds=4))
+    aligner.dispatchMessages()
+    assert seen == [(1, 3), (0, 5), (0, 8), (1, 9)]
+    inputs[1].signalMessage(stamped(13))
+    aligner.dispatchMessages()
+    assert seen[4:] == []  # the first input is due at 12
+    inputs[1].signalMessage(stamped(22))
+    aligner.dispatchMessages()
+    assert seen[4:] == [(1, 13), (1, 22)]
+    inputs[0].signalMessage(stamped(21))
+    assert aligner.getQueueStatus(0) == QueueStatus(False, 0, 2, 1)
+    assert aligner.getQueueStatus(1) == QueueStatus(True, 0, 4, 0)
+
+
+def test_an_aligner_takes_other_inputs() -> None:
+    aligner, inputs, seen = aligned(10, 2)
+    aligner.connectInput(inputs[0])
+    aligner.registerCallback(0, lambda message: seen.append((7, *stamps_of([message]))))
+    for each in inputs:
+        each.signalMessage(stamped(5))
+    aligner.dispatchMessages()
+    assert seen == [(7, 5)]
+
+
+def test_an_aligner_and_a_sequencer_in_a_system(virtual: Context, executor: SingleThreadedExecutor) -> None:
+    node = Node("listener", context=virtual)
+    executor.add_node(node)
+    source, aligned_at, sequenced_at = SimpleFilter(), list[tuple[int, int]](), list[tuple[int, int]]()
+    aligner = InputAligner(Duration(seconds=1), source)
+    aligner.setupDispatchTimer(node, Duration(seconds=0.1))
+    sequencer = TimeSequencer(source, 0.5, 0.1, 0, node)
+    start = node.get_clock().now().nanoseconds
+
+    def since(message: Any) -> tuple[int, int]:
+        return stamps_of([message])[0] - start, (node.get_clock().now().nanoseconds - start) // 10**8
+
+    aligner.registerCallback(0, lambda message: aligned_at.append(since(message)))
+    sequencer.registerCallback(lambda message: sequenced_at.append(since(message)))
+    for offset in (3, 1, 2):
+        source.signalMessage(stamped(start + offset))
+    spin_until(executor, lambda: len(sequenced_at) == 3)
+    assert aligned_at == [(1, 1), (2, 1), (3, 1)]
+    assert sequenced_at == [(1, 6), (2, 6), (3, 6)]
+    source.signalMessage(stamped(start))
+    sequencer.shutdown()
+    assert sequencer.messages == []
+    assert sequencer.last_time.nanoseconds == start + 3
+
+
+def test_a_sequencer_drops_what_is_too_much_and_what_has_no_stamp(
+    virtual: Context, executor: SingleThreadedExecutor, log_lines: list[Record]
+) -> None:
+    node = Node("listener", context=virtual)
+    executor.add_node(node)
+    sequencer = TimeSequencer(None, 0.0, 0.1, 2, node)
+    for stamp in (3, 1, 2):
+        sequencer.add(stamped(stamp))
+    assert [stamp for stamp, _, _ in sorted(sequencer.messages)] == [2, 3]
+    sequencer.add(String(data="a"))
+    assert "String has no header.stamp" in log_lines[-1].message
+    with pytest.raises(TypeError, match="expected a Time, got str"):
+        TimeSequencer(None, 0.0, 0.1, 2, node, "data").add(String(data="a"))
+    sequencer.connectInput(SimpleFilter())
+    with pytest.raises(RuntimeError, match="Already connected"):
+        sequencer.connectInput(SimpleFilter())
