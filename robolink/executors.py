@@ -53,6 +53,9 @@ class Executor:
     parallel = False
     """True if other callbacks go on while one of them waits."""
 
+    _queue_type_: Callable[..., ReadyQueue[Entity]] = ReadyQueue
+    """Class of its ready queue, which decides whose turn is next."""
+
     _driver: Driver | None = None
     """Driver by which a host runs the callbacks, where it does."""
 
@@ -60,7 +63,7 @@ class Executor:
         self._context = context if context is not None else get_default_context()
         if not self._context.ok():
             raise NotInitializedException("cannot make an executor", ended_by=self._context.ended_by)
-        self._queue_: ReadyQueue[Entity] = ReadyQueue(self._context.make_inbox(), self._context.time.steady)
+        self._queue_ = self._queue_type_(self._context.make_inbox(), self._context.time.steady)
         """Ready queue: what is ready, and what will be."""
         self.inbox = self._queue_.inbox
         self._waiting = Waiting(self._queue_, self._context.time)
@@ -429,7 +432,7 @@ class SingleThreadedExecutor(Executor):
 
     def __init__(self, *, context: Context | None = None) -> None:
         super().__init__(context=context)
-        self._parks = type(self) is SingleThreadedExecutor
+        self._parks = type(self).__module__.startswith("robolink.")
         """False for a class of the user's own, which may override what is not called for a parked node."""
         # In a host one thread runs the callbacks of all programs, those of a class of the user's own excepted: it may
         # override what the host would not call.

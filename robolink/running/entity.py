@@ -147,7 +147,7 @@ class Receiver(Entity):
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
         self._move(self._parking, executor._queue_.inbox)
         super().attach(executor, has_turn)
-        self.mailbox.listed = has_turn and not self.lane
+        self.mailbox.listed = has_turn and executor._queue_.in_rounds and not self.lane
         for _ in range(len(self.mailbox) - has_turn):
             if not self.mailbox.listed:
                 self.become_ready()
@@ -175,7 +175,7 @@ class Receiver(Entity):
         queue = self._queue_
         if queue is None:
             return
-        self.mailbox.listed = not self.lane  # never for the parts of a waitable, each of whose messages has a turn
+        self.mailbox.listed = queue.in_rounds and not self.lane  # else each message has a turn, as a waitable's do
         queue.ready.append(self)
 
     def overflowed(self) -> None:

@@ -49,12 +49,14 @@ def logger_of(entity: Entity) -> RcutilsLogger:
 class TaskRunner(Entity):
     """Runs one task in an executor, again and again until it is done.
 
-    When the task is what `origin`'s callback has returned, that one's group is busy until then.
+    When the task is what `origin`'s callback has returned, that one's group is busy until then, if it `holds_group`.
     """
 
-    def __init__(self, task: Task[Any], executor: Loop, origin: Entity | None = None) -> None:
+    def __init__(
+        self, task: Task[Any], executor: Loop, origin: Entity | None = None, *, holds_group: bool = True
+    ) -> None:
         super().__init__()
-        self.task, self._origin = task, origin
+        self.task, self._origin, self._holds_group = task, origin, holds_group
         self.executor, self._queue_ = executor, executor._queue_
         self.serves = origin is not None and origin.serves
 
@@ -73,7 +75,7 @@ class TaskRunner(Entity):
         if not (taken.done() or taken.cancelled()):
             self._sleep(taken)
             return
-        if self._origin is not None:
+        if self._origin is not None and self._holds_group:
             self._origin.gate.ending_execution(self._origin)
         error = taken.exception()
         if error is not None:

@@ -86,6 +86,9 @@ EntityT = TypeVar("EntityT", bound=Runnable)
 class ReadyQueue(Generic[EntityT]):
     """Ready entities, which have their turns in rounds, those their group holds back, and timers by deadline."""
 
+    in_rounds = True
+    """True if an entity has one turn in each round, however much waits for it; False if all that waits has its own."""
+
     def __init__(self, inbox: Inbox, steady: Callable[[], int]) -> None:
         self.inbox = inbox
         """Where arrivals wait until they are delivered; whoever waits for work waits here."""

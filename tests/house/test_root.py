@@ -14,7 +14,6 @@ TESTS = Path(__file__).parents[1]
 RCLPY = TESTS / "data" / "rclpy_api.json"
 OWN = {
     "__main__": "python -m robolink",
-    "experimental": "a module of rclpy 9, which the list of rclpy 8 does not have",
     "spinning": "what stands in rclpy's own __init__: init, spin, shutdown",
     "subscription_content_filter_options": "a module of rclpy 9",
     "type_lookup": "types that other nodes describe: it belongs to no room below the node, and has no sister",
