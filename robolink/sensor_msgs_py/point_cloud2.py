@@ -160,12 +160,15 @@ def create_cloud(
         fields: The fields of a point.
         points: A structured array, a plain one with a column for each value, or tuples. An array with one more
             dimension, (width, height), makes an organized cloud.
-        point_step: Bytes of a point; None: those of its fields.
+        point_step: Bytes of a point; None: those of its fields, or of an element of a structured array, so that
+            points that `read_points` returned make a cloud with the padding of theirs.
 
     Raises:
         PointCloudError: if the fields make no type, or the points do not fit them.
     """
     fields = list(fields)
+    if point_step is None and isinstance(points, np.ndarray) and points.dtype.names is not None:
+        point_step = points.dtype.itemsize
     found = _as_points(points, dtype_from_fields(fields, point_step))
     if found.ndim not in (1, 2):
         raise PointCloudError(f"points are a row or, in an organized cloud, a grid; got {found.ndim} dimensions")
