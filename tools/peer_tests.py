@@ -66,8 +66,10 @@ class Suite(msgspec.Struct, forbid_unknown_fields=True, rename={"not_applicable"
         real: Number of tests that pass with the real packages; 0 if nobody has counted.
         path: Folders of the checkout that are put on Python's path.
         installed: Folders of the checkout that the project's packages install, by their place in the prefix.
+        depends: Packages in the prefix that the project depends on and nothing of which is needed but the name.
         options: Further options of pytest.
-        environment: Variables that the project's build sets; `{tests}` is the folder of the tests.
+        environment: Variables that the project's build sets; `{tests}` is the folder of the tests, `{prefix}` the
+            prefix, `{types}` the workspace with test_msgs.
         page: Page with the table, in docs/reference.
         failed: Why tests fail.
         not_applicable: Why tests do not apply to robolink.
@@ -82,6 +84,7 @@ class Suite(msgspec.Struct, forbid_unknown_fields=True, rename={"not_applicable"
     real: int = 0
     path: list[str] = []
     installed: dict[str, str] = {}
+    depends: list[str] = []
     options: list[str] = []
     environment: dict[str, str] = {}
     page: str = "peers.md"
@@ -214,7 +217,7 @@ def install(checkout: Path, suite: Suite, prefix: Path) -> None:
     """Copy what the project's packages install to a prefix, as its build would, and note the packages."""
     for place, folder in suite.installed.items():
         shutil.copytree(checkout / folder, prefix / place, dirs_exist_ok=True)
-        package = Path(place).parts[1]
+    for package in (*(Path(place).parts[1] for place in suite.installed), *suite.depends):
         marker = prefix / "share" / "ament_index" / "resource_index" / "packages" / package
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
@@ -226,9 +229,10 @@ def environment(stage: Stage, domain: int) -> dict[str, str]:
     """Return the environment of a file's process: nothing of the caller's that changes how nodes meet."""
     stored = {name: text for name, text in os.environ.items() if not name.startswith(("ROS_", "ROBOLINK_", "ZENOH_"))}
     chosen = {"ROBOLINK_TRANSPORT": "memory"} if stage.transport == "memory" else {"ROS_DOMAIN_ID": str(domain)}
-    if stage.suite.installed:
+    if stage.suite.installed or stage.suite.depends:
         chosen["AMENT_PREFIX_PATH"] = str(stage.prefix)
-    chosen |= {name: text.format(tests=stage.tests) for name, text in stage.suite.environment.items()}
+    places = {"tests": stage.tests, "prefix": stage.prefix, "types": TYPES.parents[1]}
+    chosen |= {name: text.format_map(places) for name, text in stage.suite.environment.items()}
     own = (str((stage.checkout / each).absolute()) for each in stage.suite.path)
     path = os.pathsep.join(filter(None, (*own, str(TYPES), str(ROOT), stored.get("PYTHONPATH"))))
     return {**stored, **chosen, "PYTHONPATH": path, "ROBOLINK_COMPAT": "always", "PYTHONDONTWRITEBYTECODE": "1"}

@@ -356,6 +356,7 @@ def test_definitions_are_the_files_of_a_workspace(tmp_path: Path, monkeypatch: p
         "msg/Basic.idl": BASIC_IDL,
         "msg/Whole.idl": WHOLE_IDL,
         "srv/Ask.srv": "Part p\n---\nBasic b\n",
+        "msg/Mixed.msg": "Basic basic\n",
         "srv/Lacks.srv": "Nothing p\n---\n",
     }.items():
         (tmp_path / "interfaces/kit" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -377,6 +378,9 @@ def test_definitions_are_the_files_of_a_workspace(tmp_path: Path, monkeypatch: p
         f"{LINE}SRV: kit/srv/Ask\nPart p\n---\nBasic b\n\n{LINE}MSG: kit/Basic\n\n{LINE}IDL: kit/Basic"
     )
     assert asked.endswith(f"\n{LINE}MSG: kit/Part\n# metres\nfloat32 c\n")
+    mixed = full("kit/Mixed")  # what rosbag2 has here is an .idl file that the build makes
+    assert (mixed.encoding, mixed.encoded_message_definition[:11]) == ("ros2msg", "Basic basic")
+    assert "MSG: kit/Basic\n" in mixed.encoded_message_definition
     for unknown in ("kit/srv/Lacks", "kit/srv/Nothing", "kit/Nothing", "kit", "../kit/Set"):
         assert (full(unknown).encoding, full(unknown).encoded_message_definition) == ("unknown", "")
 

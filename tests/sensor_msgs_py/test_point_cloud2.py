@@ -217,3 +217,13 @@ def test_what_goes_in_comes_out(data: st.DataObject) -> None:
     values = [st.floats(width=32) if _FORMATS[kind][0] == "f" else st.integers(0, 127) for kind in kinds]
     points = data.draw(st.lists(st.tuples(*values), max_size=5))
     assert same(read_points_list(create_cloud(HEADER, fields, points)), points)
+
+
+def test_points_of_a_padded_cloud_make_one_like_it() -> None:
+    fields = [field("x", 0), field("intensity", 8, PointField.UINT16)]
+    padded = create_cloud(HEADER, fields, [(1.0, 2), (3.0, 4)], point_step=32)
+    again = create_cloud(HEADER, fields, read_points(padded))
+    assert again == padded
+    assert create_cloud(HEADER, fields, read_points(padded), point_step=32) == padded
+    with pytest.raises(PointCloudError, match="the fields say"):
+        create_cloud(HEADER, fields, read_points(padded), point_step=16)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from robolink.bag.topic import message_definition
 from robolink.companions.rosbag2_py._storage import MessageDefinition
 from robolink.companions.rosidl_runtime import get_message
 from robolink.exceptions import RobolinkError
@@ -37,9 +38,7 @@ class LocalMessageDefinitionSource:
         try:
             suffix, sections = _service(root_topic_type) if "/srv/" in root_topic_type else _message(root_topic_type)
         except LookupError:
-            suffix, sections = "", []
-        if not sections:
-            return MessageDefinition(root_topic_type, "unknown", "", "")
+            return _of_class(root_topic_type)
         first = sections[0][2] if sections[0][0] == MSG else _shown(sections[0])
         text = "\n".join([first, *map(_shown, sections[1:])])
         return MessageDefinition(root_topic_type, ENCODINGS[suffix], text, _hash(root_topic_type))
@@ -124,6 +123,15 @@ def _ended(text: str) -> str:
 def _shown(section: Section) -> str:
     suffix, name, text = section
     return f"{LINE}{suffix[1:].upper()}: {name}\n{text}"
+
+
+def _of_class(name: str) -> MessageDefinition:
+    """Return the definition in .msg's language of a message some of which is in .idl files; else an empty one."""
+    try:
+        cls = get_message(name)
+    except (RobolinkError, ImportError, AttributeError, ValueError):  # what get_message raises for an unknown type
+        return MessageDefinition(name, "unknown", "", "")
+    return MessageDefinition(name, ENCODINGS[MSG], message_definition(cls), type_hash(cls))
 
 
 def _hash(name: str) -> str:
