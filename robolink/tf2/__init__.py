@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         TransformException,
     )
     from robolink.tf2.static_transform_broadcaster import StaticTransformBroadcaster
+    from robolink.tf2.static_transform_listener import StaticTransformListener
     from robolink.tf2.transform_broadcaster import TransformBroadcaster
     from robolink.tf2.transform_listener import TransformListener
 
@@ -57,6 +58,7 @@ __all__ = [
     "NotImplementedException",
     "Stamped",
     "StaticTransformBroadcaster",
+    "StaticTransformListener",
     "TimeoutException",
     "TransformBroadcaster",
     "TransformException",
@@ -81,6 +83,7 @@ _HOMES = {
     "NotImplementedException": "buffer_interface",
     "Stamped": "buffer_interface",
     "StaticTransformBroadcaster": "static_transform_broadcaster",
+    "StaticTransformListener": "static_transform_listener",
     "TimeoutException": "exceptions",
     "TransformBroadcaster": "transform_broadcaster",
     "TransformException": "exceptions",

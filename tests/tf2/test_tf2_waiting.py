@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
+import robolink
 from robolink import Context, Node
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.duration import Duration
@@ -22,6 +23,7 @@ from robolink.tf2 import (
     ExtrapolationException,
     LookupException,
     StaticTransformBroadcaster,
+    StaticTransformListener,
     TransformBroadcaster,
     TransformListener,
 )
@@ -181,6 +183,48 @@ def test_a_thread_waits_for_another_that_spins(context: Context) -> None:
     context.shutdown()
     listener.dedicated_listener_thread.join(10)
     assert not listener.dedicated_listener_thread.is_alive()
+
+
+@pytest.fixture
+def default_context(monkeypatch: pytest.MonkeyPatch) -> Iterator[Context]:
+    """The default context, with nobody else on its network."""
+    monkeypatch.setenv("ROBOLINK_TRANSPORT", "memory")
+    with robolink.init(args=[]):
+        yield robolink.get_default_context()
+
+
+def test_a_listener_without_a_node_makes_one_and_spins_it(default_context: Context) -> None:
+    robot, buffer = node_in(default_context, "robot"), Buffer()
+    listener = TransformListener(buffer, None)
+    TransformBroadcaster(robot).sendTransform(transform("a", "b", 1))
+    StaticTransformBroadcaster(robot).sendTransform(transform("b", "c"))
+    assert buffer.lookup_transform("a", "c", LATEST, Duration(seconds=30)).header.stamp.sec == 1
+    assert listener.node.get_name().startswith("transform_listener_impl_")
+    assert listener.node.get_parameter("use_sim_time").value is False
+    listener.unregister()
+    listener.unregister()
+    listener.dedicated_listener_thread.join(10)
+    assert not listener.dedicated_listener_thread.is_alive()
+    assert robot.get_node_names() == ["robot"]
+
+
+@pytest.mark.parametrize(
+    "make",
+    [StaticTransformListener, lambda buffer, node: TransformListener(buffer, node, static_only=True)],
+    ids=["class", "argument"],
+)
+def test_a_listener_to_static_transforms_alone(
+    make: Any, robot: Node, seer: Node, executor: SingleThreadedExecutor
+) -> None:
+    buffer = Buffer()
+    listener = make(buffer, seer)
+    TransformBroadcaster(robot).sendTransform(transform("a", "b", 1))
+    StaticTransformBroadcaster(robot).sendTransform(transform("b", "c"))
+    spin_until(executor, lambda: buffer.can_transform("b", "c", LATEST))
+    assert not buffer.can_transform("a", "b", LATEST)
+    assert seer.count_subscribers("/tf") == 0
+    listener.unregister()
+    assert seer.count_subscribers("/tf_static") == 0
 
 
 def test_who_spins_the_node_takes_it_from_the_listeners_thread(context: Context) -> None:
