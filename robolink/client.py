@@ -42,7 +42,7 @@ class _Call:
 
     straight = False
 
-    def __init__(self, client: Client, inbox: Inbox, future: Future[Any], fails: bool) -> None:
+    def __init__(self, client: BaseClient, inbox: Inbox, future: Future[Any], fails: bool) -> None:
         self.client, self.future, self.fails = client, future, fails
         self.sequence_number = 0
         self.sink: functools.partial[Any] = inbox.sink(self)
@@ -69,8 +69,8 @@ class _Call:
             self.client.remove_pending_request(self.future)
 
 
-class Client(ServiceEnd):
-    """Calls one service; made by `Node.create_client`.
+class BaseClient(ServiceEnd):
+    """Base of Client and AsyncClient: calls under way, and their answers.
 
     Args:
         owner: Node that it belongs to, as the graph knows it.
@@ -102,7 +102,6 @@ class Client(ServiceEnd):
         self._endpoint = Endpoint(owner, EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
         self._transport = self._endpoint.transport
         self._calls: set[_Call] = set()
-        self._outside: set[queue.SimpleQueue[Any]] = set()
         self._destroyed = False
         self.malformed = 0
         """Number of answers that could not be read."""
@@ -110,7 +109,6 @@ class Client(ServiceEnd):
         self._keeps_: object = None
         """The node, which lives while anybody refers to the client."""
         self._endpoint.announce()
-        self._context.on_shutdown(self._release)
 
     @property
     def is_waiting(self) -> bool:
@@ -123,102 +121,6 @@ class Client(ServiceEnd):
         for call in list(self._calls):
             inbox.take_over(call.sink)
 
-    def call(self, request: Message, timeout_sec: float | None = None) -> Any:
-        """Call the service and wait for the response; in a callback as well, since services go on meanwhile.
-
-        Args:
-            request: Request of the service's type.
-            timeout_sec: Longest wait in seconds; None waits for ever.
-
-        Returns:
-            The response.
-
-        Raises:
-            TypeError: if the request is of another type.
-            TimeoutError: if no response comes in time.
-            ServiceError: (a RuntimeError) at once if the call would be a deadlock, since only a callback group that
-                it keeps busy itself could answer; without a timeout also if nobody serves, or the server goes away.
-        """
-        return self._call(request, timeout_sec, patient=timeout_sec is not None)
-
-    def try_call(self, request: Message, timeout_sec: float | None = None) -> Any:
-        """Call as `call` does, but raise a ServiceError as soon as it is known that no response will come.
-
-        Args:
-            request: Request of the service's type.
-            timeout_sec: Longest wait in seconds; None waits for ever.
-        """
-        return self._call(request, timeout_sec, patient=False)
-
-    def _call(self, request: Message, timeout_sec: float | None, *, patient: bool) -> Any:
-        executor = self.executor
-        if executor is None or not executor.spins_here:
-            return self._call_from_outside(request, timeout_sec, patient)
-        # rclpy stops here for ever: the only thread waits for an answer that only it could receive.
-        with executor.waiting_for(self._only_servers(executor)) as would_wait_for_itself:
-            if would_wait_for_itself:
-                raise ServiceError(
-                    f"service {self.service_name} is served only by the callback group that this call keeps busy;"
-                    " give the service or the caller a callback group of its own, or use call_async"
-                )
-            return self._call_in_callback(executor, request, timeout_sec, patient)
-
-    def _only_servers(self, executor: Loop) -> list[Entity]:
-        """Return the executor's own servers of this service if nobody else serves it and none of them may be free."""
-        served = (each for node in executor.get_nodes() for each in node._entity_store_.all_services())
-        local: list[Entity] = [each for each in served if each.service_name == self.service_name]
-        is_free = any(each.callback_group.can_execute(each) for each in local)
-        if not local or (is_free and not executor.parallel):
-            return []
-        everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.service_name)
-        return local if len(everywhere) <= len(local) else []
-
-    def _call_in_callback(self, executor: Loop, request: Message, timeout_sec: float | None, patient: bool) -> Any:
-        deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
-        future = self.try_call_async(request)
-        executor.serve_until(future, deadline)
-        if future.done() and (future.exception() is None or not patient):
-            return future.result()
-        executor.serve_until(Future(), deadline)
-        self.remove_pending_request(future)
-        raise self._timeout(timeout_sec, future.exception())
-
-    def _call_from_outside(self, request: Message, timeout_sec: float | None, patient: bool) -> Any:
-        packed = self._packed(request)
-        answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._outside.add(answers)
-        handle = self._transport.call(self._key(), *packed, answers.put)
-        try:
-            return self._first_readable(answers, timeout_sec, patient)
-        finally:
-            self._outside.discard(answers)
-            handle.close()
-
-    def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None, patient: bool) -> Any:
-        """Wait for an answer; one that cannot be read is passed over, since another server may do better."""
-        time = self._context.time
-        deadline = None if timeout_sec is None else time.steady() + int(timeout_sec * 1e9)
-        bad: Exception | None = None
-        reason: ServiceError | None = None
-        while True:
-            try:
-                answer = time.take(answers, deadline)
-            except queue.Empty:
-                raise self._timeout(timeout_sec, reason) from None
-            if answer is _RELEASED:
-                raise ExternalShutdownException(
-                    f"service {self.service_name}: the context ended before the answer came"
-                )
-            if answer is None:
-                reason = self._no_answer(bad)
-                if not patient:
-                    raise reason
-                continue
-            try:
-                return self._read(answer)
-            except _UNREADABLE as error:
-                bad = self._refuse(error)
-
     def _key(self) -> str:
         """Return the key to ask: that of Humble's servers if there are no others."""
         endpoint = self._endpoint
@@ -228,30 +130,9 @@ class Client(ServiceEnd):
                 return endpoint.key
         return endpoint.humble_key if servers else endpoint.key
 
-    def _release(self) -> None:
-        for answers in list(self._outside):
-            answers.put(_RELEASED)
-
-    def _timeout(self, timeout_sec: float | None, reason: BaseException | None) -> TimeoutError:
-        text = f"service {self.service_name}: no answer within {timeout_sec} s"
-        return TimeoutError(text if reason is None else f"{text}: {str(reason).partition(': ')[2]}")
-
     def _send_(self, request: bytes, sink: Sink) -> Handle:
         """Send a serialized request; `sink` gets what `Transport.read` reads as a response, then None once."""
         return self._transport.call(self._key(), request, self._endpoint.attachment(), sink)
-
-    # Never done, since rclpy's programs call early, spin with a timeout and look.
-    def call_async(self, request: Message) -> Future[Any]:
-        """Call the service with `request`, and return the future of the response, which comes while something spins.
-
-        The future is never done if nobody serves or the server goes away, as in rclpy; a warning says so. Raises
-        TypeError for a request of another type.
-        """
-        return self._ask(request, fails=False)
-
-    def try_call_async(self, request: Message) -> Future[Any]:
-        """Call with `request` as `call_async` does; the future gets a ServiceError once no response can come."""
-        return self._ask(request, fails=True)
 
     def _ask(self, request: Message, *, fails: bool) -> Future[Any]:
         packed = self._packed(request)
@@ -363,6 +244,160 @@ class Client(ServiceEnd):
         self._check_(f"client of {self.srv_name}")
         return self._endpoint.count_others() > 0
 
+    def destroy(self) -> None:
+        """End the client, and abandon its calls. Safe to call twice."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        self._keeps_ = None
+        for call in list(self._calls):
+            self.remove_pending_request(call.future)
+        if self.introspection is not None:
+            self.introspection.close()
+        self._endpoint.close()
+        self.detach()
+
+
+class Client(BaseClient):
+    """Calls one service; made by `Node.create_client`.
+
+    Args:
+        owner: Node that it belongs to, as the graph knows it.
+        srv_type: Service class.
+        srv_name: Fully qualified name of the service.
+        qos_profile: Quality of service.
+        callback_group: Group of the client.
+    """
+
+    def __init__(
+        self,
+        owner: Owner,
+        srv_type: type[Any],
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        super().__init__(owner, srv_type, srv_name, qos_profile, callback_group)
+        self._outside: set[queue.SimpleQueue[Any]] = set()
+        self._context.on_shutdown(self._release)
+
+    def call(self, request: Message, timeout_sec: float | None = None) -> Any:
+        """Call the service and wait for the response; in a callback as well, since services go on meanwhile.
+
+        Args:
+            request: Request of the service's type.
+            timeout_sec: Longest wait in seconds; None waits for ever.
+
+        Returns:
+            The response.
+
+        Raises:
+            TypeError: if the request is of another type.
+            TimeoutError: if no response comes in time.
+            ServiceError: (a RuntimeError) at once if the call would be a deadlock, since only a callback group that
+                it keeps busy itself could answer; without a timeout also if nobody serves, or the server goes away.
+        """
+        return self._call(request, timeout_sec, patient=timeout_sec is not None)
+
+    def try_call(self, request: Message, timeout_sec: float | None = None) -> Any:
+        """Call as `call` does, but raise a ServiceError as soon as it is known that no response will come.
+
+        Args:
+            request: Request of the service's type.
+            timeout_sec: Longest wait in seconds; None waits for ever.
+        """
+        return self._call(request, timeout_sec, patient=False)
+
+    def _call(self, request: Message, timeout_sec: float | None, *, patient: bool) -> Any:
+        executor = self.executor
+        if executor is None or not executor.spins_here:
+            return self._call_from_outside(request, timeout_sec, patient)
+        # rclpy stops here for ever: the only thread waits for an answer that only it could receive.
+        with executor.waiting_for(self._only_servers(executor)) as would_wait_for_itself:
+            if would_wait_for_itself:
+                raise ServiceError(
+                    f"service {self.service_name} is served only by the callback group that this call keeps busy;"
+                    " give the service or the caller a callback group of its own, or use call_async"
+                )
+            return self._call_in_callback(executor, request, timeout_sec, patient)
+
+    def _only_servers(self, executor: Loop) -> list[Entity]:
+        """Return the executor's own servers of this service if nobody else serves it and none of them may be free."""
+        served = (each for node in executor.get_nodes() for each in node._entity_store_.all_services())
+        local: list[Entity] = [each for each in served if each.service_name == self.service_name]
+        is_free = any(each.callback_group.can_execute(each) for each in local)
+        if not local or (is_free and not executor.parallel):
+            return []
+        everywhere = self._context.graph.endpoints(EndpointKind.SERVICE, name=self.service_name)
+        return local if len(everywhere) <= len(local) else []
+
+    def _call_in_callback(self, executor: Loop, request: Message, timeout_sec: float | None, patient: bool) -> Any:
+        deadline = None if timeout_sec is None else self._context.time.steady() + int(timeout_sec * 1e9)
+        future = self.try_call_async(request)
+        executor.serve_until(future, deadline)
+        if future.done() and (future.exception() is None or not patient):
+            return future.result()
+        executor.serve_until(Future(), deadline)
+        self.remove_pending_request(future)
+        raise self._timeout(timeout_sec, future.exception())
+
+    def _call_from_outside(self, request: Message, timeout_sec: float | None, patient: bool) -> Any:
+        packed = self._packed(request)
+        answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._outside.add(answers)
+        handle = self._transport.call(self._key(), *packed, answers.put)
+        try:
+            return self._first_readable(answers, timeout_sec, patient)
+        finally:
+            self._outside.discard(answers)
+            handle.close()
+
+    def _first_readable(self, answers: queue.SimpleQueue[Any], timeout_sec: float | None, patient: bool) -> Any:
+        """Wait for an answer; one that cannot be read is passed over, since another server may do better."""
+        time = self._context.time
+        deadline = None if timeout_sec is None else time.steady() + int(timeout_sec * 1e9)
+        bad: Exception | None = None
+        reason: ServiceError | None = None
+        while True:
+            try:
+                answer = time.take(answers, deadline)
+            except queue.Empty:
+                raise self._timeout(timeout_sec, reason) from None
+            if answer is _RELEASED:
+                raise ExternalShutdownException(
+                    f"service {self.service_name}: the context ended before the answer came"
+                )
+            if answer is None:
+                reason = self._no_answer(bad)
+                if not patient:
+                    raise reason
+                continue
+            try:
+                return self._read(answer)
+            except _UNREADABLE as error:
+                bad = self._refuse(error)
+
+    def _release(self) -> None:
+        for answers in list(self._outside):
+            answers.put(_RELEASED)
+
+    def _timeout(self, timeout_sec: float | None, reason: BaseException | None) -> TimeoutError:
+        text = f"service {self.service_name}: no answer within {timeout_sec} s"
+        return TimeoutError(text if reason is None else f"{text}: {str(reason).partition(': ')[2]}")
+
+    # Never done, since rclpy's programs call early, spin with a timeout and look.
+    def call_async(self, request: Message) -> Future[Any]:
+        """Call the service with `request`, and return the future of the response, which comes while something spins.
+
+        The future is never done if nobody serves or the server goes away, as in rclpy; a warning says so. Raises
+        TypeError for a request of another type.
+        """
+        return self._ask(request, fails=False)
+
+    def try_call_async(self, request: Message) -> Future[Any]:
+        """Call with `request` as `call_async` does; the future gets a ServiceError once no response can come."""
+        return self._ask(request, fails=True)
+
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves this name with this type, or the context ends.
 
@@ -378,19 +413,6 @@ class Client(ServiceEnd):
             if self._context.ok():
                 raise
             return False  # the context ended between two looks, and destroyed this client
-
-    def destroy(self) -> None:
-        """End the client, and abandon its calls. Safe to call twice."""
-        if self._destroyed:
-            return
-        self._destroyed = True
-        self._keeps_ = None
-        for call in list(self._calls):
-            self.remove_pending_request(call.future)
-        if self.introspection is not None:
-            self.introspection.close()
-        self._endpoint.close()
-        self.detach()
 
     def __enter__(self) -> Client:
         return self

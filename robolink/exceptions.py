@@ -370,6 +370,10 @@ class InterruptedByUser(KeyboardInterrupt, ExternalShutdownException):
         super().__init__(text)
 
 
+class TimeSourceChangedError(RobolinkError):
+    """A clock began or ceased to follow /clock while somebody slept by it, so that the end of the sleep is unknown."""
+
+
 class ROSInterruptException(ExternalShutdownException):
     """A rate's sleep was ended because its context shut down: no fault of the callback that sleeps."""
 

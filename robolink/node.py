@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 from robolink.arguments.command_line import Arguments, parse_arguments
 from robolink.arguments.remapping import RemapKind, resolve_name
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from robolink.client import BaseClient
 from robolink.client import Client as Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
@@ -32,6 +33,7 @@ from robolink.logging import get_logger
 from robolink.node_parts import rosout
 from robolink.node_parts.entities import EntityStore, destroy
 from robolink.node_parts.graph_queries import endpoints_of_topic, of_node
+from robolink.node_parts.making import make_client, make_publisher, make_service, make_subscription
 from robolink.node_parts.names import overrides_of, own_name
 from robolink.node_parts.parameters import (
     OnSetCallback,
@@ -57,7 +59,6 @@ from robolink.timer import period_ns
 from robolink.topic_endpoint_info import TopicEndpointInfo
 from robolink.type_description_service import TypeDescriptionService
 from robolink.type_support import MsgT as MsgT
-from robolink.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from robolink.utilities import get_default_context
 from robolink.waitable import Waitable
 from robolink.wire import EndpointKind, NodeToken
@@ -83,54 +84,24 @@ class _OfStore:
     def __init__(self, name: str) -> None:
         self._name = name
 
-    def __get__(self, node: Node | None, owner: type[Node]) -> Any:
+    def __get__(self, node: BaseNode | None, owner: type[BaseNode]) -> Any:
         return self if node is None else getattr(node._parameter_store_, self._name)
 
 
-class Node(Destroyable):
-    """Participant of a ROS system; subclass it, or use it as it is.
+class BaseNode(Destroyable):
+    """Base of Node and AsyncNode: names, parameters, the graph, and the end.
 
-        class Talker(Node):
-            def __init__(self) -> None:
-                super().__init__("talker")
-                self.publisher = self.create_publisher(String, "chatter", 10)
-                self.create_timer(0.5, self.on_timer)
-
-            def on_timer(self) -> None:
-                self.publisher.publish(String(data="hello"))
-
-    Its callbacks run while an executor spins it: `rclpy.spin(node)`, or `executor.add_node(node)` and
-    `executor.spin()`. `destroy_node` ends it; so do the end of its context and of a `with` block.
-
-    Args:
-        node_name: Name without namespace: letters, digits and underscores. The ROS argument `-r __node:=name`
-            replaces it.
-        context: Context to live in, which must be initialized; None is the default one, that of `rclpy.init`.
-        cli_args: Command line for this node alone, such as `["--ros-args", "-r", "chatter:=news"]`. It goes before
-            the context's arguments. None adds nothing.
-        namespace: Prefix of the node's name and of its relative topics, with or without the leading slash; None is
-            the root. The ROS argument `-r __ns:=/name` replaces it.
-        use_global_arguments: False ignores the context's ROS arguments (those of the program's command line).
-        enable_rosout: True publishes what the node logs on /rosout, unless the arguments say
-            `--disable-rosout-logs`.
-        start_parameter_services: True starts the six services by which others read and set parameters
-            (`~/get_parameters` ...).
-        parameter_overrides: Values that go before the defaults with which the node declares its parameters, and
-            before those of the command line and of parameter files.
-        allow_undeclared_parameters: True lets parameters be set that were never declared; reading one that does not
-            exist then returns one without a value.
-        automatically_declare_parameters_from_overrides: True declares every override at once, with its own type.
-        enable_logger_service: True starts the services that read and set the levels of loggers
-            (`~/get_logger_levels`, `~/set_logger_levels`).
-        rosout_qos_profile: Quality of service of what it logs on /rosout; a number is a depth.
-
-    Raises:
-        NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
-        InvalidNodeNameException: (a ValueError) if the name is against ROS 2's rules; InvalidNamespaceException for
-            the namespace.
-        InvalidROSArgsError: (a ValueError) if `cli_args` cannot be read; UnknownROSArgsError for flags that do not
-            exist.
+    Its arguments are those of `Node`. A kind of node has `create_publisher` and its sisters, which make entities of its
+    own classes.
     """
+
+    _runs_itself_ = False
+    """True for a node that runs on an event loop of its own, and that no executor may spin."""
+
+    if TYPE_CHECKING:
+        create_publisher: Any
+        create_subscription: Any
+        create_service: Any
 
     PARAM_REL_TOL = 1e-6
     """Tolerance of a float towards an end or a step of its range, relative to its size."""
@@ -182,7 +153,7 @@ class Node(Destroyable):
             raise
 
     def _init_own_(self) -> None:
-        self._executor_: weakref.ReferenceType[Executor] | None = None
+        self._executor_: weakref.ReferenceType[Any] | None = None
         self._is_parked_ = False
         """True while that executor keeps the entities only for the next spin, and the node belongs to none."""
         self._number_ = _number()
@@ -195,10 +166,11 @@ class Node(Destroyable):
         self._publishers, self._subscriptions = store.publishers, store.subscriptions
         self._clients, self._services = store.clients, store.services
         self._timers, self._guards = store.timers, store.guards
-        self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
-        self._rate_group = ReentrantCallbackGroup()
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
-        self._clock = ROSClock(time_base=self._context.time)
+        self._clock = self._make_clock_()
+
+    def _make_clock_(self) -> ROSClock:
+        return ROSClock(time_base=self._context.time)
 
     def _init_parameters_(self, given: list[Parameter[Any]] | None, allow_undeclared: bool) -> None:
         full_name = self.get_fully_qualified_name()
@@ -285,30 +257,11 @@ class Node(Destroyable):
         return self._context
 
     @property
-    def default_callback_group(self) -> CallbackGroup:
-        """Callback group of all that is created without one: mutually exclusive, one callback at a time."""
-        return self._default_callback_group
-
-    @property
-    def executor(self) -> Executor | None:
-        """Executor that runs the node's callbacks; None if it was added to none. Setting it moves the node."""
-        return None if self._is_parked_ or self._executor_ is None else self._executor_()
-
-    @executor.setter
-    def executor(self, executor: Executor | None) -> None:
-        current = self.executor
-        if current is executor:
-            return
-        if current is not None:
-            current.remove_node(self)
-        self._belong_to_(executor if executor is not None and executor.add_node(self) else None)
-
-    @property
-    def _attached_to_(self) -> Executor | None:
-        """The executor that the node's entities are attached to: also while it is parked there."""
+    def _attached_to_(self) -> Any:
+        """The executor, or what stands for one, that the node's entities are attached to: also while it is parked there."""
         return None if self._executor_ is None else self._executor_()
 
-    def _belong_to_(self, executor: Executor | None) -> None:
+    def _belong_to_(self, executor: Any) -> None:
         """Note the executor that has this node from now on; None for none."""
         self._executor_ = None if executor is None else weakref.ref(executor)
 
@@ -320,15 +273,13 @@ class Node(Destroyable):
         """Return the logger with the node's full name, dots for slashes; its lines go to the console and /rosout."""
         return self._logger
 
-    def _overridden_(
-        self, kind: type[Any], topic: str, qos: QoSProfile, options: QoSOverridingOptions | None
-    ) -> QoSProfile:
-        """Return the profile with the policies that parameters override, where options allow them."""
-        if options is None:
-            return qos
-        from robolink.qos_overriding_options import overridden  # late: few nodes ask
+    def _in_group_(self, group: CallbackGroup) -> dict[str, Any]:
+        """Return the arguments by which this kind of node's `create_...` let a callback run in a group."""
+        raise NotImplementedError
 
-        return overridden(kind, self, topic, qos, options)
+    def _group_of_action_(self) -> CallbackGroup:
+        """Return the callback group of an action that is given none."""
+        raise NotImplementedError
 
     # Parameters: declaring
 
@@ -577,225 +528,6 @@ class Node(Destroyable):
         """Remove a `callback`. Raises ValueError if it was not added."""
         self._parameter_store_.post_set.remove(callback)
 
-    # Entities: creating
-
-    def create_publisher(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: PublisherEventCallbacks | None = None,
-        qos_overriding_options: QoSOverridingOptions | None = None,
-        publisher_class: type[Publisher[MsgT]] = Publisher,
-    ) -> Publisher[MsgT]:
-        """Create a publisher of a topic.
-
-        Args:
-            msg_type: Message class of the topic, such as `std_msgs.msg.String`.
-            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
-            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile.
-            callback_group: Group of the event callbacks; None is the node's default group.
-            event_callbacks: Callbacks for events, such as a subscription that appears; None only warns of
-                subscriptions with another type.
-            qos_overriding_options: Policies that parameters may change, `qos_overrides./topic.publisher.depth` for
-                example; None allows none.
-            publisher_class: Class to make, a Publisher or a subclass.
-
-        Raises:
-            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `msg_type` is not a message class.
-            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
-            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        name = self.resolve_topic_name(topic)
-        check_is_valid_msg_type(msg_type)
-        publisher = publisher_class(
-            self._owner_,
-            msg_type,
-            name,
-            self._overridden_(Publisher, name, as_profile(qos_profile), qos_overriding_options),
-            event_callbacks=event_callbacks,
-            callback_group=callback_group or self._default_callback_group,
-        )
-        publisher.topic = topic  # as written, as in rclpy; `topic_name` is the whole one
-        publisher._keeps_ = self
-        self._entity_store_.add_publisher(publisher)
-        return publisher
-
-    def create_subscription(
-        self,
-        msg_type: type[MsgT],
-        topic: str,
-        callback: Callable[..., Any],
-        qos_profile: QoSProfile | int,
-        *,
-        callback_group: CallbackGroup | None = None,
-        event_callbacks: SubscriptionEventCallbacks | None = None,
-        qos_overriding_options: QoSOverridingOptions | None = None,
-        raw: bool = False,
-        content_filter_options: ContentFilterOptions | None = None,
-    ) -> Subscription[MsgT]:
-        """Create a subscription of a topic.
-
-        Args:
-            msg_type: Message class of the topic.
-            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
-            callback: Function, or coroutine function, called with each message; if it takes two arguments, with the
-                message and its MessageInfo.
-            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile. The
-                depth is how many messages wait for the callback before the oldest is dropped.
-            callback_group: Group of the callback and of the event callbacks; None is the node's default group.
-            event_callbacks: Callbacks for events, such as messages that were lost; None only warns of publishers
-                with another type.
-            qos_overriding_options: Policies that parameters may change; None allows none.
-            raw: True calls back with the serialized message (bytes) instead.
-            content_filter_options: Filter for messages. It has no effect here, as with rmw_zenoh: a warning says so,
-                and `is_cft_enabled` is False.
-
-        Raises:
-            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `msg_type` is not a message class.
-            RuntimeError: if the callback takes neither one argument nor two.
-            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
-            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        group = callback_group or self._default_callback_group
-        name = self.resolve_topic_name(topic)
-        check_is_valid_msg_type(msg_type)
-        qos = self._overridden_(Subscription, name, as_profile(qos_profile), qos_overriding_options)
-        made = Subscription(self._owner_, msg_type, name, callback, group, qos, raw, event_callbacks)
-        made.topic = topic
-        if content_filter_options is not None:
-            made.warn_of_filter(content_filter_options.filter_expression)
-        self._entity_store_.add_subscription(made)
-        return made
-
-    def create_service(
-        self,
-        srv_type: type[Any],
-        srv_name: str,
-        callback: Callable[[Any, Any], Any],
-        *,
-        qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: CallbackGroup | None = None,
-    ) -> Service:
-        """Create a service: serve requests under a name.
-
-        Args:
-            srv_type: Service class, such as `std_srvs.srv.SetBool`.
-            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
-            callback: Function, or coroutine function, called as `callback(request, response)` with an empty response;
-                it returns the response to send.
-            qos_profile: Quality of service; by default reliable with a depth of 10.
-            callback_group: Group of the callback; None is the node's default group.
-
-        Raises:
-            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `srv_type` is not a service class.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        group = callback_group or self._default_callback_group
-        name = self.resolve_service_name(srv_name)
-        check_is_valid_srv_type(srv_type)
-        made = Service(self._owner_, srv_type, name, callback, group, qos_profile)
-        made.srv_name = srv_name
-        return self._entity_store_.add(made, self._entity_store_.services)
-
-    def create_client(
-        self,
-        srv_type: type[Any],
-        srv_name: str,
-        *,
-        qos_profile: QoSProfile = qos_profile_services_default,
-        callback_group: CallbackGroup | None = None,
-    ) -> Client:
-        """Create a client, which calls a service.
-
-        Args:
-            srv_type: Service class, such as `std_srvs.srv.SetBool`.
-            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
-            qos_profile: Quality of service; by default reliable with a depth of 10.
-            callback_group: Group of the client; None is the node's default group. An answer is taken even while
-                another callback of the group runs, so that a callback may wait for it.
-
-        Raises:
-            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
-            MessageError: (a ValueError) if `srv_type` is not a service class.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        group = callback_group or self._default_callback_group
-        name = self.resolve_service_name(srv_name)
-        check_is_valid_srv_type(srv_type)
-        made = Client(self._owner_, srv_type, name, qos_profile, group)
-        made.srv_name = srv_name
-        made._keeps_ = self
-        return self._entity_store_.add(made, self._entity_store_.clients)
-
-    def create_timer(
-        self,
-        timer_period_sec: float,
-        callback: Callable[..., Any] | None,
-        callback_group: CallbackGroup | None = None,
-        clock: Clock | None = None,
-        autostart: bool = True,
-    ) -> Timer:
-        """Create a timer, which calls a function periodically.
-
-        Args:
-            timer_period_sec: Period in seconds, 0 or more; 0 calls as often as possible.
-            callback: Function, or coroutine function, without arguments, or with one that is annotated as TimerInfo.
-                None, as in rclpy, must be replaced (`timer.callback = ...`) before the first call is due.
-            callback_group: Group of the callback; None is the node's default group.
-            clock: Clock that the period is measured by; None is the node's clock.
-            autostart: False makes the timer cancelled; `timer.reset()` starts it.
-
-        Raises:
-            ValueError: if the period is negative, infinite or not a number.
-            TypeError: if the callback cannot be called.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        group = callback_group or self._default_callback_group
-        period = period_ns(timer_period_sec)
-        timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
-        return self._entity_store_.add(timer, self._entity_store_.timers)
-
-    def create_guard_condition(
-        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
-    ) -> GuardCondition:
-        """Create a guard condition, by which any thread has a callback run by the executor: `guard.trigger()`.
-
-        Args:
-            callback: Function, or coroutine function, without arguments.
-            callback_group: Group of the callback; None is the node's default group.
-
-        Raises:
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        group = callback_group or self._default_callback_group
-        return self._entity_store_.add(
-            GuardCondition(callback, group, context=self._context), self._entity_store_.guards
-        )
-
-    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Create a rate, whose `sleep` waits for the rest of each period.
-
-        Args:
-            frequency: Ticks per second (Hz), above 0.
-            clock: Clock that the period is measured by; None is the node's clock.
-
-        Raises:
-            ValueError: if the frequency is not above 0.
-            InvalidHandle: (a RuntimeError) if the node has been destroyed.
-        """
-        if frequency <= 0:
-            raise ValueError("frequency must be > 0")
-        timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)
-        return Rate(timer, context=self._context)
-
     # Entities: listing and destroying
 
     @property
@@ -809,7 +541,7 @@ class Node(Destroyable):
         yield from self._entity_store_.subscriptions
 
     @property
-    def clients(self) -> Iterator[Client]:
+    def clients(self) -> Iterator[BaseClient]:
         """Clients of the node."""
         yield from self._entity_store_.clients
 
@@ -849,7 +581,7 @@ class Node(Destroyable):
         """Destroy a `subscription`; False if it is none of this node's."""
         return destroy(subscription, self._entity_store_.subscriptions)
 
-    def destroy_client(self, client: Client) -> bool:
+    def destroy_client(self, client: BaseClient) -> bool:
         """Destroy a `client`; False if it is none of this node's."""
         return destroy(client, self._entity_store_.clients)
 
@@ -860,16 +592,6 @@ class Node(Destroyable):
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroy a `timer`; False if it is none of this node's."""
         return destroy(timer, self._entity_store_.timers)
-
-    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
-        """Destroy a guard condition, `guard`; False if it is none of this node's."""
-        return destroy(guard, self._entity_store_.guards)
-
-    def destroy_rate(self, rate: Rate) -> bool:
-        """Destroy a `rate`; False if it is none of this node's."""
-        found = self.destroy_timer(rate._timer)
-        rate.destroy()
-        return found
 
     # The graph
 
@@ -1003,21 +725,6 @@ class Node(Destroyable):
         """Return the number of clients of the service `service_name`, of any type."""
         return self._graph_.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
 
-    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until a node is in the graph, or the context ends.
-
-        Args:
-            fully_qualified_node_name: Namespace and name of the node; a missing leading slash is added.
-            timeout: Longest wait in seconds; negative waits for ever, 0 does not wait.
-
-        Returns:
-            True if the node is there.
-        """
-        namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
-        graph = self._graph_
-        limit = None if timeout < 0 else timeout
-        return self._context.wait_until(lambda: graph.has_node(name, namespace or "/"), limit)
-
     # The end
 
     def destroy_node(self) -> None:
@@ -1046,7 +753,7 @@ class Node(Destroyable):
         if not context.ok() or not context.transport.threaded:
             return
         with contextlib.suppress(RuntimeError):  # Python ends, or there are too many threads
-            _thread.start_new_thread(Node.destroy_node, (self,))
+            _thread.start_new_thread(BaseNode.destroy_node, (self,))
 
     if not TYPE_CHECKING:  # or every attribute would be one of mypy's
 
@@ -1055,6 +762,303 @@ class Node(Destroyable):
                 text = f"{type(self).__name__} is not a node yet: call super().__init__('NAME') first"
                 raise AttributeError(text, name="", obj=None)  # else Python would advise another name of ours
             return super().__getattribute__(name)  # which says what Python says
+
+
+class Node(BaseNode):
+    """Participant of a ROS system; subclass it, or use it as it is.
+
+        class Talker(Node):
+            def __init__(self) -> None:
+                super().__init__("talker")
+                self.publisher = self.create_publisher(String, "chatter", 10)
+                self.create_timer(0.5, self.on_timer)
+
+            def on_timer(self) -> None:
+                self.publisher.publish(String(data="hello"))
+
+    Its callbacks run while an executor spins it: `rclpy.spin(node)`, or `executor.add_node(node)` and
+    `executor.spin()`. `destroy_node` ends it; so do the end of its context and of a `with` block.
+
+    Args:
+        node_name: Name without namespace: letters, digits and underscores. The ROS argument `-r __node:=name`
+            replaces it.
+        context: Context to live in, which must be initialized; None is the default one, that of `rclpy.init`.
+        cli_args: Command line for this node alone, such as `["--ros-args", "-r", "chatter:=news"]`. It goes before
+            the context's arguments. None adds nothing.
+        namespace: Prefix of the node's name and of its relative topics, with or without the leading slash; None is
+            the root. The ROS argument `-r __ns:=/name` replaces it.
+        use_global_arguments: False ignores the context's ROS arguments (those of the program's command line).
+        enable_rosout: True publishes what the node logs on /rosout, unless the arguments say
+            `--disable-rosout-logs`.
+        start_parameter_services: True starts the six services by which others read and set parameters
+            (`~/get_parameters` ...).
+        parameter_overrides: Values that go before the defaults with which the node declares its parameters, and
+            before those of the command line and of parameter files.
+        allow_undeclared_parameters: True lets parameters be set that were never declared; reading one that does not
+            exist then returns one without a value.
+        automatically_declare_parameters_from_overrides: True declares every override at once, with its own type.
+        enable_logger_service: True starts the services that read and set the levels of loggers
+            (`~/get_logger_levels`, `~/set_logger_levels`).
+        rosout_qos_profile: Quality of service of what it logs on /rosout; a number is a depth.
+
+    Raises:
+        NotInitializedException: (a RuntimeError) if the context is not initialized, or has ended.
+        InvalidNodeNameException: (a ValueError) if the name is against ROS 2's rules; InvalidNamespaceException for
+            the namespace.
+        InvalidROSArgsError: (a ValueError) if `cli_args` cannot be read; UnknownROSArgsError for flags that do not
+            exist.
+    """
+
+    def _init_own_(self) -> None:
+        super()._init_own_()
+        self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
+        self._rate_group = ReentrantCallbackGroup()
+
+    def _in_group_(self, group: CallbackGroup) -> dict[str, Any]:
+        return {"callback_group": group}
+
+    def _group_of_action_(self) -> CallbackGroup:
+        return self.default_callback_group
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """Callback group of all that is created without one: mutually exclusive, one callback at a time."""
+        return self._default_callback_group
+
+    @property
+    def executor(self) -> Executor | None:
+        """Executor that runs the node's callbacks; None if it was added to none. Setting it moves the node."""
+        return None if self._is_parked_ or self._executor_ is None else self._executor_()
+
+    @executor.setter
+    def executor(self, executor: Executor | None) -> None:
+        current = self.executor
+        if current is executor:
+            return
+        if current is not None:
+            current.remove_node(self)
+        self._belong_to_(executor if executor is not None and executor.add_node(self) else None)
+
+    # Entities: creating
+
+    def create_publisher(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher[MsgT]] = Publisher,
+    ) -> Publisher[MsgT]:
+        """Create a publisher of a topic.
+
+        Args:
+            msg_type: Message class of the topic, such as `std_msgs.msg.String`.
+            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile.
+            callback_group: Group of the event callbacks; None is the node's default group.
+            event_callbacks: Callbacks for events, such as a subscription that appears; None only warns of
+                subscriptions with another type.
+            qos_overriding_options: Policies that parameters may change, `qos_overrides./topic.publisher.depth` for
+                example; None allows none.
+            publisher_class: Class to make, a Publisher or a subclass.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
+            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
+            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        args = msg_type, topic, qos_profile, group, event_callbacks, qos_overriding_options
+        return make_publisher(self, publisher_class, *args)
+
+    def create_subscription(
+        self,
+        msg_type: type[MsgT],
+        topic: str,
+        callback: Callable[..., Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
+    ) -> Subscription[MsgT]:
+        """Create a subscription of a topic.
+
+        Args:
+            msg_type: Message class of the topic.
+            topic: Name of the topic, relative to the node's namespace unless it begins with a slash; remapped.
+            callback: Function, or coroutine function, called with each message; if it takes two arguments, with the
+                message and its MessageInfo.
+            qos_profile: Quality of service; a number is the depth of a reliable, volatile KEEP_LAST profile. The
+                depth is how many messages wait for the callback before the oldest is dropped.
+            callback_group: Group of the callback and of the event callbacks; None is the node's default group.
+            event_callbacks: Callbacks for events, such as messages that were lost; None only warns of publishers
+                with another type.
+            qos_overriding_options: Policies that parameters may change; None allows none.
+            raw: True calls back with the serialized message (bytes) instead.
+            content_filter_options: Filter for messages. It has no effect here, as with rmw_zenoh: a warning says so,
+                and `is_cft_enabled` is False.
+
+        Raises:
+            InvalidTopicNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `msg_type` is not a message class.
+            RuntimeError: if the callback takes neither one argument nor two.
+            UnsupportedEventTypeError: (a RuntimeError) if there is a callback for an event that this network lacks.
+            InvalidQosOverridesError: (a RuntimeError) if a parameter makes the profile invalid.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        more = raw, content_filter_options, event_callbacks, qos_overriding_options
+        return make_subscription(self, Subscription, msg_type, topic, callback, qos_profile, group, *more)
+
+    def create_service(
+        self,
+        srv_type: type[Any],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Create a service: serve requests under a name.
+
+        Args:
+            srv_type: Service class, such as `std_srvs.srv.SetBool`.
+            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            callback: Function, or coroutine function, called as `callback(request, response)` with an empty response;
+                it returns the response to send.
+            qos_profile: Quality of service; by default reliable with a depth of 10.
+            callback_group: Group of the callback; None is the node's default group.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        return make_service(self, Service, srv_type, srv_name, callback, qos_profile, group)
+
+    def create_client(
+        self,
+        srv_type: type[Any],
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """Create a client, which calls a service.
+
+        Args:
+            srv_type: Service class, such as `std_srvs.srv.SetBool`.
+            srv_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            qos_profile: Quality of service; by default reliable with a depth of 10.
+            callback_group: Group of the client; None is the node's default group. An answer is taken even while
+                another callback of the group runs, so that a callback may wait for it.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+            MessageError: (a ValueError) if `srv_type` is not a service class.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        return make_client(self, Client, srv_type, srv_name, qos_profile, group)
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Create a timer, which calls a function periodically.
+
+        Args:
+            timer_period_sec: Period in seconds, 0 or more; 0 calls as often as possible.
+            callback: Function, or coroutine function, without arguments, or with one that is annotated as TimerInfo.
+                None, as in rclpy, must be replaced (`timer.callback = ...`) before the first call is due.
+            callback_group: Group of the callback; None is the node's default group.
+            clock: Clock that the period is measured by; None is the node's clock.
+            autostart: False makes the timer cancelled; `timer.reset()` starts it.
+
+        Raises:
+            ValueError: if the period is negative, infinite or not a number.
+            TypeError: if the callback cannot be called.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        period = period_ns(timer_period_sec)
+        timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
+        return self._entity_store_.add(timer, self._entity_store_.timers)
+
+    def create_guard_condition(
+        self, callback: Callable[[], Any], callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """Create a guard condition, by which any thread has a callback run by the executor: `guard.trigger()`.
+
+        Args:
+            callback: Function, or coroutine function, without arguments.
+            callback_group: Group of the callback; None is the node's default group.
+
+        Raises:
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        group = callback_group or self._default_callback_group
+        return self._entity_store_.add(
+            GuardCondition(callback, group, context=self._context), self._entity_store_.guards
+        )
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Create a rate, whose `sleep` waits for the rest of each period.
+
+        Args:
+            frequency: Ticks per second (Hz), above 0.
+            clock: Clock that the period is measured by; None is the node's clock.
+
+        Raises:
+            ValueError: if the frequency is not above 0.
+            InvalidHandle: (a RuntimeError) if the node has been destroyed.
+        """
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)
+        return Rate(timer, context=self._context)
+
+    # Entities: destroying
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Destroy a guard condition, `guard`; False if it is none of this node's."""
+        return destroy(guard, self._entity_store_.guards)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Destroy a `rate`; False if it is none of this node's."""
+        found = self.destroy_timer(rate._timer)
+        rate.destroy()
+        return found
+
+    # Waiting, and the end
+
+    def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
+        """Wait until a node is in the graph, or the context ends.
+
+        Args:
+            fully_qualified_node_name: Namespace and name of the node; a missing leading slash is added.
+            timeout: Longest wait in seconds; negative waits for ever, 0 does not wait.
+
+        Returns:
+            True if the node is there.
+        """
+        namespace, _, name = ("/" + fully_qualified_node_name.lstrip("/")).rpartition("/")
+        graph = self._graph_
+        limit = None if timeout < 0 else timeout
+        return self._context.wait_until(lambda: graph.has_node(name, namespace or "/"), limit)
 
     def __enter__(self) -> Node:
         return self

@@ -5,7 +5,7 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.client import Client
+from robolink.client import BaseClient
 from robolink.event_handler import EventHandler, with_callbacks
 from robolink.guard_condition import GuardCondition
 from robolink.node_parts.losses import LossReports
@@ -29,7 +29,7 @@ class EntityStore:
         self._node = weakref.ref(node)  # weak: a node that nobody refers to is to go at once, without a collection
         self.publishers: list[Publisher[Any]] = []
         self.subscriptions: list[Subscription[Any]] = []
-        self.clients: list[Client] = []
+        self.clients: list[BaseClient] = []
         self.services: list[Service] = []
         self.timers: list[Timer] = []
         self.guards: list[GuardCondition] = []

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
-    from robolink.client import Client
+    from robolink.client import BaseClient
     from robolink.exceptions import InvalidHandle
     from robolink.executors import Executor
+    from robolink.graph.endpoint import Owner
     from robolink.impl.rcutils_logger import RcutilsLogger
     from robolink.interfaces.rcl_interfaces.msg import (
         ListParametersResult,
         ParameterDescriptor,
         SetParametersResult,
     )
+    from robolink.node_parts.entities import EntityStore
     from robolink.node_parts.parameters import OnSetCallback
     from robolink.parameter import Parameter
     from robolink.publisher import Publisher
@@ -96,7 +98,7 @@ class TypedNode(DeclaringNode, Protocol):
         """Its services."""
 
     @property
-    def clients(self) -> Iterator[Client]:
+    def clients(self) -> Iterator[BaseClient]:
         """Its clients."""
 
     @property
@@ -157,3 +159,27 @@ class ParameterNode(ServingNode, Protocol):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter[Any]]) -> SetParametersResult:
         """Set all or none."""
+
+
+class MakingNode(OwningNode, Protocol):
+    """Node as seen by what makes its entities."""
+
+    @property
+    def _owner_(self) -> Owner:
+        """The node as the graph knows it."""
+
+    @property
+    def _entity_store_(self) -> EntityStore:
+        """Store of its entities."""
+
+    def resolve_topic_name(self, topic: str) -> str:
+        """Return the fully qualified name of a topic."""
+
+    def resolve_service_name(self, service: str) -> str:
+        """Return the fully qualified name of a service."""
+
+    def declare_parameter(self, name: str, value: Any, descriptor: ParameterDescriptor) -> Parameter[Any]:
+        """Declare a parameter, by which a policy of a topic's QoS may be changed."""
+
+    def get_parameter(self, name: str) -> Parameter[Any]:
+        """Return a parameter."""
