@@ -162,6 +162,10 @@ class Context:
         """Make the inbox of an executor of this context; `parked` for entities that no executor has."""
         return self._platform.make_inbox(parked=parked)
 
+    def make_loop_inbox(self, rouse: Callable[[], object]) -> Inbox:
+        """Make the inbox of a node on an event loop, which `rouse` lets look into it; see `LoopInbox`."""
+        return self._platform.make_loop_inbox(rouse, threaded=self.transport.threaded)
+
     def make_pool(self, size: int) -> Executor:
         """Make the pool of `size` threads in which callbacks of a multi-threaded executor run."""
         return self._platform.make_pool(size)

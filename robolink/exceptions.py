@@ -32,6 +32,7 @@ RobolinkError
 │   ├─ InvalidParameterValueException (ValueError)
 │   ├─ ParameterImmutableException
 │   └─ ParameterUninitializedException (ValueError)
+├─ TimeSourceChangedError                        a clock that began or ceased to follow /clock during a sleep
 ├─ ServiceError (RuntimeError)                   a call without an answer: no server, or one that went away
 └─ ExternalShutdownException                     the context was shut down while somebody spins
     ├─ InterruptedByUser (KeyboardInterrupt)     by Ctrl-C

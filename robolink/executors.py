@@ -36,6 +36,11 @@ if TYPE_CHECKING:
 
 ExecutorT = TypeVar("ExecutorT", bound="Executor")
 
+_RUNS_ITSELF = (
+    "node {} is an AsyncNode, which asyncio runs and no executor: write `async with node:` or `await node.run()` in a"
+    " coroutine, and start that by asyncio.run(...)"
+)
+
 CUSTOM_SLICE = 0.1
 """Longest `spin_once`, in seconds, of an executor of the user's own that spins until a future is done."""
 
@@ -91,7 +96,12 @@ class Executor:
     # Nodes
 
     def add_node(self, node: SpunNode) -> bool:
-        """Run the callbacks of `node` from now on, and remove it from another executor; False if it is here already."""
+        """Run the callbacks of `node` from now on, and remove it from another executor; False if it is here already.
+
+        Raises TypeError for an AsyncNode, which runs on asyncio's event loop.
+        """
+        if node._runs_itself_:
+            raise TypeError(_RUNS_ITSELF.format(node.get_fully_qualified_name()))
         before = node._attached_to_
         if before is not None and before is not self:
             before.remove_node(node)

@@ -22,6 +22,7 @@ from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentE
 from robolink.exceptions import NotInitializedException
 from robolink.executors import Executor as Executor
 from robolink.expand_topic_name import expand_topic_name
+from robolink.graph.action_names import actions
 from robolink.graph.endpoint import Disagreements, Owner
 from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
 from robolink.guard_condition import GuardCondition as GuardCondition
@@ -258,7 +259,7 @@ class BaseNode(Destroyable):
 
     @property
     def _attached_to_(self) -> Any:
-        """The executor, or what stands for one, that the node's entities are attached to: also while it is parked there."""
+        """The executor (or pump) that the node's entities are attached to: also while it is parked there."""
         return None if self._executor_ is None else self._executor_()
 
     def _belong_to_(self, executor: Any) -> None:
@@ -682,6 +683,40 @@ class BaseNode(Destroyable):
             NodeNameNonExistentError: (a RuntimeError) if there is no such node.
         """
         return of_node(self._graph_, node_name, node_namespace, EndpointKind.CLIENT)
+
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        """Return all actions that have a server or a client, each with its types."""
+        return actions(self.get_service_names_and_types(), self.get_topic_names_and_types())
+
+    def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Return the actions that a node serves, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        remote = node_name, node_namespace
+        return actions(
+            self.get_service_names_and_types_by_node(*remote), self.get_publisher_names_and_types_by_node(*remote)
+        )
+
+    def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
+        """Return the actions of which a node is a client, each with its types.
+
+        Args:
+            node_name: Name of the node, without namespace.
+            node_namespace: Its namespace, '/' for the root.
+
+        Raises:
+            NodeNameNonExistentError: (a RuntimeError) if there is no such node.
+        """
+        remote = node_name, node_namespace
+        return actions(
+            self.get_client_names_and_types_by_node(*remote), self.get_subscriber_names_and_types_by_node(*remote)
+        )
 
     def get_publishers_info_by_topic(self, topic_name: str, no_mangle: bool = False) -> list[TopicEndpointInfo]:
         """Return all publishers of a topic, each with its node, type, hash, gid and profile.

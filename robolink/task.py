@@ -25,7 +25,7 @@ _running = threading.local()
 class TaskExecutor(Protocol):
     """Executor as seen by a future: where its done callbacks run."""
 
-    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Future[Any]:
         """Run the function or coroutine `callback` there, with `args` and `kwargs`."""
 
 

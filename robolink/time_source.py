@@ -107,7 +107,7 @@ class TimeSource:
             qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             # A group of its own: time goes on while a coroutine of the node waits for it.
             self._clock_sub = node.create_subscription(
-                ClockMsg, CLOCK_TOPIC, self.clock_callback, qos, callback_group=MutuallyExclusiveCallbackGroup()
+                ClockMsg, CLOCK_TOPIC, self.clock_callback, qos, **node._in_group_(MutuallyExclusiveCallbackGroup())
             )
 
     def _unsubscribe(self) -> None:

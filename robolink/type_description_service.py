@@ -43,7 +43,7 @@ class TypeDescriptionService:
 
             group = MutuallyExclusiveCallbackGroup()
             name = f"{node.get_name()}/{SERVICE_NAME}"
-            self._service = node.create_service(GetTypeDescription, name, self._answer, callback_group=group)
+            self._service = node.create_service(GetTypeDescription, name, self._answer, **node._in_group_(group))
 
     def destroy(self) -> None:
         """Serve no more. Safe to call twice."""

@@ -8,11 +8,11 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from robolink.action import graph
 from robolink.action.states import ENDED
 from robolink.callback_groups import CallbackGroup
 from robolink.client import Client
 from robolink.exceptions import ServiceError
+from robolink.graph import action_names as graph
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
 from robolink.interfaces.action_msgs.msg import GoalStatus as GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
@@ -138,7 +138,7 @@ class ActionClient(Waitable):
         Raises:
             ValueError: if the name is not valid, or the class is not an action.
         """
-        super().__init__(callback_group or node.default_callback_group)
+        super().__init__(callback_group or node._group_of_action_())
         self._node, self._action_type = node, checked_action_type(action_type)
         self._action_name = node.resolve_topic_name(action_name)
         self._logger = node.get_logger().get_child("action_client")

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
-from robolink.action import graph
 from robolink.action.server_entities import Executions, LateService, Results, run_to_its_end
 from robolink.action.states import ACTIVE, Statuses, goals_to_cancel, next_status
 from robolink.action.states import GoalEvent as GoalEvent
@@ -20,6 +19,7 @@ from robolink.exceptions import (
     TransportError,
 )
 from robolink.exceptions import RCLError as RCLError
+from robolink.graph import action_names as graph
 from robolink.interfaces.action_msgs.msg import GoalInfo, GoalStatus
 from robolink.interfaces.action_msgs.srv import CancelGoal
 from robolink.interfaces.unique_identifier_msgs.msg import UUID
@@ -231,7 +231,7 @@ class ActionServer(Waitable):
             ValueError: if the name is not valid, or the class is not an action.
             TypeError: if `execute_callback` cannot be called.
         """
-        super().__init__(callback_group or node.default_callback_group)
+        super().__init__(callback_group or node._group_of_action_())
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)

@@ -65,6 +65,9 @@ class ServingNode(Protocol):
     ) -> Service:
         """Make a service."""
 
+    def _in_group_(self, group: CallbackGroup) -> dict[str, Any]:
+        """Return the arguments by which its `create_...` let a callback run in a group."""
+
     def destroy_service(self, service: Service) -> bool:
         """Undeclare a service."""
 

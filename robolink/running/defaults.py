@@ -83,6 +83,12 @@ class Platform:
         """Make the mailbox at which an executor waits; `parked` for what waits while no executor has it."""
         return Inbox()
 
+    def make_loop_inbox(self, rouse: Callable[[], object], *, threaded: bool) -> Inbox:
+        """Make the mailbox of a node on an event loop, which `rouse` lets look into it."""
+        from robolink.running.loop_inbox import LoopInbox  # late: few programs have such nodes
+
+        return LoopInbox(rouse, threaded=threaded)
+
     def make_sweeper(self) -> Sweeper:
         """Make what empties mailboxes that nobody looks into."""
         return Sweeper()

@@ -41,7 +41,7 @@ class Inbox:
 
     def __init__(self) -> None:
         self._queue: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        self._arrival = _arrival_type(self._queue)
+        self._arrival = arrival_type(self._queue.put)
         self.lock = threading.RLock()
         """Lock of the mailboxes of this inbox's targets."""
         self._get = self._queue.get
@@ -90,6 +90,9 @@ class Inbox:
         except queue.Empty:
             return None
 
+    def close(self) -> None:
+        """Do nothing: no thread belongs to this inbox."""
+
     def deliver(self, arrival: Any) -> None:
         """Deliver what `wait` returned."""
         with self.lock:
@@ -99,9 +102,9 @@ class Inbox:
         arrival.target.sink(arrival.content)  # it moved to another inbox, whose lock guards it now
 
 
-def _arrival_type(destination: queue.SimpleQueue[Any]) -> Any:
-    """Return a new class of arrivals; making one of it queues it."""
-    return msgspec.defstruct("Arrival", ["target", "content"], namespace={"__post_init__": destination.put}, gc=False)
+def arrival_type(put: Callable[[Any], object]) -> Any:
+    """Return a new class of arrivals; making one of it calls `put` with it."""
+    return msgspec.defstruct("Arrival", ["target", "content"], namespace={"__post_init__": put}, gc=False)
 
 
 class Sweepable(Protocol):

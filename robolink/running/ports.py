@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robolink.running.inbox import Inbox, Sweepable
     from robolink.running.ready_queue import ReadyQueue
     from robolink.running.timebase import TimeBase
-    from robolink.task import Future, Task
+    from robolink.task import Future
     from robolink.transport.base import Transport
 
 
@@ -87,6 +87,9 @@ class SpunNode(NodeLike, OverriddenNode, Protocol):
     _turns_: list[Any]
     """Entities whose turn was still to come when the last executor removed the node, in order."""
 
+    _runs_itself_: bool
+    """True for a node on asyncio's event loop, which no executor may run."""
+
     _is_parked_: bool
     """True while its entities are attached to an executor, but it belongs to none."""
 
@@ -131,7 +134,7 @@ class Loop(Protocol):
     def spins_here(self) -> bool:
         """True if the calling thread is inside a callback of this loop."""
 
-    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Future[Any]:
         """Run a function or coroutine in this loop."""
 
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:

@@ -64,7 +64,7 @@ class TransformListener:
         self.group = ReentrantCallbackGroup()
         if not static_only:
             self.tf_sub = node.create_subscription(
-                TFMessage, tf_topic, self.callback, DEPTH if qos is None else qos, callback_group=self.group
+                TFMessage, tf_topic, self.callback, DEPTH if qos is None else qos, **node._in_group_(self.group)
             )
             self.tf_sub.serves = True  # it goes on while a callback of the same executor waits for a transform
         self.tf_static_sub = node.create_subscription(
@@ -72,7 +72,7 @@ class TransformListener:
             tf_static_topic,
             self.static_callback,
             latched if static_qos is None else static_qos,
-            callback_group=self.group,
+            **node._in_group_(self.group),
         )
         self.tf_static_sub.serves = True
         if spin_thread:

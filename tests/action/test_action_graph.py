@@ -12,8 +12,8 @@ from robolink.action import (
     get_action_names_and_types,
     get_action_server_names_and_types_by_node,
 )
-from robolink.action.graph import actions
 from robolink.exceptions import NodeNameNonExistentError
+from robolink.graph.action_names import actions
 from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.std_msgs.msg import Empty
 

@@ -32,7 +32,7 @@ def type_of_action(ctx: typer.Context, incomplete: str) -> list[str]:
 
 
 def _served() -> Iterator[tuple[str, str]]:
-    from robolink.action.graph import GOAL_TYPE, MARK, SEND_GOAL
+    from robolink.graph.action_names import GOAL_TYPE, MARK, SEND_GOAL
     from robolink.wire import EndpointKind, EndpointToken
 
     for each in complete.announced():
@@ -157,8 +157,8 @@ def send_goal(
 
 def _types(context: Context) -> dict[str, list[str]]:
     """Return the types of every action, by name, sorted."""
-    from robolink.action.graph import actions
     from robolink.cli.shared.graph import endpoints
+    from robolink.graph.action_names import actions
     from robolink.graph.graph import names_and_types
     from robolink.wire import EndpointKind
 

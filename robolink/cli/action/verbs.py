@@ -11,7 +11,6 @@ import uuid
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.action.graph import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
 from robolink.cli.shared import messages
 from robolink.cli.shared.graph import absolute, domains_with, endpoints, hint, sections_of
 from robolink.cli.shared.messages import GivenRequest, message_of
@@ -19,6 +18,7 @@ from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import looking, node_of
 from robolink.context import Context
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
+from robolink.graph.action_names import FEEDBACK, GET_RESULT, GOAL_TYPE, SEND_GOAL, part_name
 from robolink.interfaces import find, is_named
 from robolink.system import clocks
 from robolink.system.terminal import shown

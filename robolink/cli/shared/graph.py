@@ -100,7 +100,7 @@ def is_hidden(name: str) -> bool:
 
 def sections_of(endpoints: Sequence[EndpointToken], hidden: bool) -> list[tuple[str, NamesAndTypes]]:
     """Return the six sections of `ros2 node info`: the title of each, with names and types."""
-    from robolink.action.graph import actions
+    from robolink.graph.action_names import actions
 
     of = {kind: names_and_types(each for each in endpoints if each.kind is kind) for kind in EndpointKind}
     titles = {

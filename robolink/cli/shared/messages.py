@@ -43,7 +43,7 @@ def service_type(context: Context, service: str, given: str = "") -> type[Any]:
 
 def action_type(context: Context, action: str, given: str = "") -> type[Action]:
     """Return the action class of an action that is served, as `message_type` does for a topic."""
-    from robolink.action.graph import GOAL_TYPE, SEND_GOAL, part_name
+    from robolink.graph.action_names import GOAL_TYPE, SEND_GOAL, part_name
 
     ends = context.graph.endpoints(EndpointKind.SERVICE, name=part_name(action, SEND_GOAL))
     served = {each.type_name.removesuffix(GOAL_TYPE) for each in ends}
@@ -56,7 +56,7 @@ def action_type(context: Context, action: str, given: str = "") -> type[Action]:
 
 def _action_of(context: Context, action: str, type_: str) -> type[Action]:
     """Return an action's class, which the graph knows by its parts only: the installed one if it has these parts."""
-    from robolink.action.graph import FEEDBACK, GET_RESULT, SEND_GOAL
+    from robolink.graph.action_names import FEEDBACK, GET_RESULT, SEND_GOAL
     from robolink.message.class_factory import action_class
 
     goal = type_of(context, _part(context, action, SEND_GOAL, EndpointKind.SERVICE))
@@ -82,7 +82,7 @@ def _parts_of(action: type[Action]) -> tuple[type[Any], ...]:
 
 
 def _part(context: Context, action: str, part: str, kind: EndpointKind) -> EndpointToken:
-    from robolink.action.graph import part_name
+    from robolink.graph.action_names import part_name
 
     name = part_name(action, part)
     found = context.graph.endpoints(kind, name=name)
