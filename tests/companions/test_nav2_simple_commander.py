@@ -138,7 +138,7 @@ def test_it_waits_for_a_server(begin: Begin, system: System) -> None:
     assert system.expect_log("said: SUCCEEDED", within=5.0)
 
 
-def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run) -> None:
+def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run, system: System) -> None:
     said = run("""
         from geographic_msgs.msg import GeoPose
         from nav_msgs.msg import Goals, Path
@@ -146,9 +146,9 @@ def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run) -> None:
         tasks = [
             nav.goThroughPoses([at(0.1), at(0.2)]),
             nav.goThroughPoses(Goals(goals=[at(0.1)])),
-            nav.followWaypoints([at(0.1), at(0.3)]),
+            nav.followWaypoints([at(0.1), at(0.3)], number_of_loops=2, goal_index=1),
             nav.followGpsWaypoints([GeoPose()]),
-            nav.followPath(path, "RPP", "precise"),
+            nav.followPath(path, "RPP", "precise", "slow", path_handler_id="any"),
             nav.spin(spin_dist=2, time_allowance=3, disable_collision_checks=True),
             nav.backup(0.25, 0.125, 4),
             nav.driveOnHeading(dist=1.5, speed=0.5, time_allowance=2.5),
@@ -156,13 +156,17 @@ def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run) -> None:
             nav.dockRobotByPose(at(0.5), "plug", nav_to_dock=False),
             nav.dockRobotByID("home"),
             nav.undockRobot("plug"),
+            nav.followObjectByTopic("/person", max_duration=30),
+            nav.followObjectByFrame("person"),
         ]
         say([task.value for task in tasks])
     """)
-    assert said == ["[2, 2, 4, 5, 3, 6, 7, 8, 9, 10, 10, 11]"]
-    through, goals, points, gps, path, spin, back, ahead, teleop, by_pose, by_id, undock = nav2.got
+    assert said == ["[2, 2, 4, 5, 3, 6, 7, 8, 9, 10, 10, 11, 13, 13]"]
+    through, goals, points, gps, path, spin, back, ahead, teleop, by_pose, by_id, undock, topic, frame = nav2.got
     assert [len(each.poses) for each in (through, goals, points)] == [2, 1, 2]
+    assert (points.number_of_loops, points.goal_index) == (2, 1)
     assert len(gps.gps_poses) == 1
+    assert path.progress_checker_id == "slow"
     assert (len(path.path.poses), path.controller_id, path.goal_checker_id) == (1, "RPP", "precise")
     assert (spin.target_yaw, spin.time_allowance.sec) == (2.0, 3)
     assert (back.target.x, back.speed, back.time_allowance.sec) == (0.25, 0.125, 4)
@@ -171,6 +175,11 @@ def test_each_task_goes_to_its_own_server(nav2: Nav2, run: Run) -> None:
     assert (by_pose.use_dock_id, by_pose.dock_type, by_pose.navigate_to_staging_pose) == (False, "plug", False)
     assert (by_id.use_dock_id, by_id.dock_id, by_id.navigate_to_staging_pose) == (True, "home", True)
     assert undock.dock_type == "plug"
+    assert (topic.pose_topic, topic.max_duration.sec) == ("/person", 30)
+    assert (frame.tracked_frame, frame.max_duration.sec) == ("person", 0)
+    assert "Jazzy's servers have no path_handler_id: they follow the path as it is" in [
+        each.message for each in system.logs
+    ]
 
 
 def test_paths_are_planned_and_smoothed(nav2: Nav2, run: Run) -> None:
@@ -249,11 +258,36 @@ def test_costmaps_and_maps(nav2: Nav2, run: Run) -> None:
         nav.clearCostmapExceptRegion(3)
         nav.clearCostmapAroundRobot(1.5)
         nav.clearCostmapAroundPose(at(2.0), 0.5)
+        nav.clearLocalCostmapAroundPose(at(2.0), 1.0)
+        nav.clearGlobalCostmapAroundPose(at(2.0), 2.0)
         say(nav.getGlobalCostmap().metadata.layer, nav.getLocalCostmap().metadata.layer)
         say(nav.changeMap("lab.yaml"), nav.changeMap("none.yaml"))
     """)
     assert said == ["global_costmap local_costmap", "True False"]
-    assert [getattr(each, "reset_distance", None) for each in nav2.got] == [None, None, 3.0, 1.5, 0.5]
+    assert [getattr(each, "reset_distance", None) for each in nav2.got] == [None, None, 3.0, 1.5, 0.5, 1.0, 2.0]
+
+
+def test_the_collision_monitor_is_switched(nav2: Nav2, run: Run, system: System) -> None:
+    run("nav.toggleCollisionMonitor(True)\nnav.toggleCollisionMonitor(False)")
+    assert nav2.got == [True, False]
+    assert any(each.message == "Toggle collision monitor request failed! it stays on" for each in system.logs)
+
+
+@pytest.mark.usefixtures("nav2")
+def test_the_state_of_the_last_task_is_cleared(run: Run) -> None:
+    said = run("""
+        nav.goToPose(at(-1.0))
+        wait(nav)
+        say(nav.getTaskError())
+        nav.clearPreviousState()
+        say(nav.getTaskError(), nav.getFeedback())
+        nav.goToPose(at(50.0))
+        while nav.getFeedback() is None:
+            nav.isTaskComplete()
+        nav.cancelTask()
+        say(nav.getFeedback(), wait(nav))
+    """)
+    assert said == ["(208, 'a wall')", "(0, '') None", "None CANCELED"]
 
 
 def test_a_map_that_is_not_there_is_named(nav2: Nav2, run: Run, system: System) -> None:
@@ -286,5 +320,5 @@ def test_it_drives_the_simulated_robot(run: Run, system: System) -> None:
 
 
 def test_every_action_of_nav2_that_a_navigator_uses_is_in_the_table() -> None:
-    others = {"DummyBehavior", "FollowObject", "Wait"}
+    others = {"DummyBehavior", "Wait"}
     assert {each.__name__ for each in ACTIONS} == set(action.__all__) - others

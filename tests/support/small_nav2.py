@@ -20,6 +20,7 @@ CLEARING: dict[str, type[Any]] = {
     "local_costmap/clear_costmap_except_region": srv.ClearCostmapExceptRegion,
     "local_costmap/clear_costmap_around_robot": srv.ClearCostmapAroundRobot,
     "local_costmap/clear_costmap_around_pose": srv.ClearCostmapAroundPose,
+    "global_costmap/clear_costmap_around_pose": srv.ClearCostmapAroundPose,
 }
 
 
@@ -44,6 +45,7 @@ class Nav2(Node):
             self.create_service(GetState, f"{node}/get_state", self.on_state)
         for name in ("local_costmap", "global_costmap"):
             self.create_service(srv.GetCostmap, f"{name}/get_costmap", functools.partial(self.on_get, name))
+        self.create_service(srv.Toggle, "collision_monitor/toggle", self.on_toggle)
         self.create_service(srv.LoadMap, "map_server/load_map", self.on_load)
         self.create_service(srv.ManageLifecycleNodes, "lifecycle_manager_navigation/manage_nodes", self.on_manage)
         self.amcl = self.create_publisher(
@@ -100,6 +102,11 @@ class Nav2(Node):
 
     def on_clear(self, request: Any, response: Any) -> Any:
         self.got.append(request)
+        return response
+
+    def on_toggle(self, request: srv.Toggle.Request, response: srv.Toggle.Response) -> srv.Toggle.Response:
+        self.got.append(request.enable)
+        response.success, response.message = request.enable, "it stays on"
         return response
 
     def on_get(self, name: str, _: Any, response: srv.GetCostmap.Response) -> srv.GetCostmap.Response:

@@ -39,6 +39,7 @@ ACTIONS: dict[type[Action], str] = {
     action.AssistedTeleop: "assisted_teleop",
     action.DockRobot: "dock_robot",
     action.UndockRobot: "undock_robot",
+    action.FollowObject: "follow_object",
 }
 """Names under which Nav2 serves its actions, relative to the namespace of the robot."""
 
@@ -73,6 +74,7 @@ class RunningTask(Enum):
     DOCK_ROBOT = 10
     UNDOCK_ROBOT = 11
     COMPUTE_AND_TRACK_ROUTE = 12
+    FOLLOW_OBJECT = 13
 
 
 RESULTS: dict[int | None, TaskResult] = {
@@ -95,6 +97,7 @@ KINDS = {
     RunningTask.ASSISTED_TELEOP: action.AssistedTeleop,
     RunningTask.DOCK_ROBOT: action.DockRobot,
     RunningTask.UNDOCK_ROBOT: action.UndockRobot,
+    RunningTask.FOLLOW_OBJECT: action.FollowObject,
 }
 """Actions by the kind of task."""
 

@@ -38,6 +38,8 @@ A_LOOK = 2.0
 """Time between two looks at the state of a node that is not active, in s."""
 A_SECOND = 1.0
 """Time between two initial poses, in s, until localization has answered one."""
+CHECKS = "they check for collisions"
+"""What Jazzy's servers do, whatever `disable_collision_checks` is."""
 BY_HAND = "robot_localization"
 """Name of the localizer that has no lifecycle to wait for."""
 
@@ -105,39 +107,54 @@ class BasicNavigator(Node):
         goal = action.NavigateThroughPoses.Goal(poses=poses_in(poses), behavior_tree=behavior_tree)
         return self._task_(RunningTask.NAVIGATE_THROUGH_POSES, goal, f"Navigating with {len(goal.poses)} goals")
 
-    def followWaypoints(self, poses: Sequence[PoseStamped]) -> RunningTask | None:
-        """Drive to poses one after the other, and do at each what the server is set up for.
+    def followWaypoints(
+        self, poses: Sequence[PoseStamped], number_of_loops: int = 0, goal_index: int = 0
+    ) -> RunningTask | None:
+        """Drive to poses one after the other; return the kind of task, None if the goal was rejected.
 
         Args:
-            poses: Poses in their order.
-
-        Returns:
-            The kind of task, None if the goal was rejected.
+            poses: Poses in their order. At each the robot does what the server is set up for.
+            number_of_loops: How many more times to go through all of them.
+            goal_index: Index of the pose to begin with.
         """
-        goal = action.FollowWaypoints.Goal(poses=poses_in(poses))
+        goal = action.FollowWaypoints.Goal(
+            poses=poses_in(poses), number_of_loops=number_of_loops, goal_index=goal_index
+        )
         return self._task_(RunningTask.FOLLOW_WAYPOINTS, goal, f"Following {len(goal.poses)} goals")
 
     def followGpsWaypoints(self, gps_poses: Sequence[GeoPose]) -> RunningTask | None:
-        """Drive to positions on the Earth one after the other.
+        """Drive to positions on the Earth one after the other; return the kind of task, None if it was rejected.
 
         Args:
             gps_poses: Poses in their order, in degrees.
-
-        Returns:
-            The kind of task, None if the goal was rejected.
         """
         goal = action.FollowGPSWaypoints.Goal(gps_poses=gps_poses)
         return self._task_(RunningTask.FOLLOW_GPS_WAYPOINTS, goal, f"Following {len(gps_poses)} gps goals")
 
-    def followPath(self, path: Path, controller_id: str = "", goal_checker_id: str = "") -> RunningTask | None:
+    def followPath(
+        self,
+        path: Path,
+        controller_id: str = "",
+        goal_checker_id: str = "",
+        progress_checker_id: str = "",
+        path_handler_id: str = "",
+    ) -> RunningTask | None:
         """Follow a path with a controller; return the kind of task, None if the goal was rejected.
 
         Args:
             path: Path to follow.
             controller_id: Name of the controller; an empty one takes the usual.
             goal_checker_id: Name of the goal checker; an empty one takes the usual.
+            progress_checker_id: Name of the progress checker; an empty one takes the usual.
+            path_handler_id: Lyrical's; Jazzy's servers have none, and a note says so.
         """
-        goal = action.FollowPath.Goal(path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
+        goal = action.FollowPath.Goal(
+            path=path,
+            controller_id=controller_id,
+            goal_checker_id=goal_checker_id,
+            progress_checker_id=progress_checker_id,
+        )
+        self._note_lack_("path_handler_id", path_handler_id, "they follow the path as it is")
         return self._task_(RunningTask.FOLLOW_PATH, goal, "Executing path")
 
     def spin(
@@ -151,7 +168,7 @@ class BasicNavigator(Node):
             disable_collision_checks: Kilted's; Jazzy's servers always check, and a note says so.
         """
         goal = action.Spin.Goal(target_yaw=float(spin_dist), time_allowance=time_of(time_allowance))
-        self._note_checks_(disable_collision_checks)
+        self._note_lack_("disable_collision_checks", disable_collision_checks, CHECKS)
         return self._task_(RunningTask.SPIN, goal, f"Spinning to angle {goal.target_yaw}")
 
     def backup(
@@ -169,7 +186,7 @@ class BasicNavigator(Node):
             time_allowance: Time after which the server gives up, in s.
             disable_collision_checks: Kilted's; Jazzy's servers always check, and a note says so.
         """
-        self._note_checks_(disable_collision_checks)
+        self._note_lack_("disable_collision_checks", disable_collision_checks, CHECKS)
         goal = straight(action.BackUp.Goal, backup_dist, backup_speed, time_allowance)
         return self._task_(RunningTask.BACKUP, goal, f"Backing up {backup_dist} m at {backup_speed} m/s")
 
@@ -188,18 +205,15 @@ class BasicNavigator(Node):
             time_allowance: Time after which the server gives up, in s.
             disable_collision_checks: Kilted's; Jazzy's servers always check, and a note says so.
         """
-        self._note_checks_(disable_collision_checks)
+        self._note_lack_("disable_collision_checks", disable_collision_checks, CHECKS)
         goal = straight(action.DriveOnHeading.Goal, dist, speed, time_allowance)
         return self._task_(RunningTask.DRIVE_ON_HEADING, goal, f"Driving {dist} m on the heading at {speed} m/s")
 
     def assistedTeleop(self, time_allowance: float = 30) -> RunningTask | None:
-        """Let a person drive, with stops before collisions.
+        """Let a person drive, with stops before collisions; return the kind of task, None if it was rejected.
 
         Args:
             time_allowance: Time after which the server ends it, in s.
-
-        Returns:
-            The kind of task, None if the goal was rejected.
         """
         goal = action.AssistedTeleop.Goal(time_allowance=time_of(time_allowance))
         return self._task_(RunningTask.ASSISTED_TELEOP, goal, "Running assisted teleop")
@@ -238,6 +252,26 @@ class BasicNavigator(Node):
         goal = action.UndockRobot.Goal(dock_type=dock_type)
         return self._task_(RunningTask.UNDOCK_ROBOT, goal, "Undocking from dock")
 
+    def followObjectByTopic(self, topic: str, max_duration: float = 0) -> RunningTask | None:
+        """Follow an object whose pose is published; return the kind of task, None if the goal was rejected.
+
+        Args:
+            topic: Topic of the pose.
+            max_duration: Time after which the server ends it, in s; 0 has no end.
+        """
+        goal = action.FollowObject.Goal(pose_topic=topic, max_duration=time_of(max_duration))
+        return self._task_(RunningTask.FOLLOW_OBJECT, goal, f"Following object on topic {topic}")
+
+    def followObjectByFrame(self, frame: str, max_duration: float = 0) -> RunningTask | None:
+        """Follow an object whose frame tf knows; return the kind of task, None if the goal was rejected.
+
+        Args:
+            frame: The object's frame.
+            max_duration: Time after which the server ends it, in s; 0 has no end.
+        """
+        goal = action.FollowObject.Goal(tracked_frame=frame, max_duration=time_of(max_duration))
+        return self._task_(RunningTask.FOLLOW_OBJECT, goal, f"Following object in frame {frame}")
+
     # The running task
 
     def isTaskComplete(self, task: RunningTask | None = RunningTask.NONE) -> bool:
@@ -274,19 +308,20 @@ class BasicNavigator(Node):
         """Forget the error of the last task."""
         self.setTaskError(0, "")
 
-    def setTaskError(self, error_code: int, error_msg: str) -> None:
-        """Set the error that `getTaskError` returns.
+    def clearPreviousState(self) -> None:
+        """Forget the last feedback and the error of the last task."""
+        self._goals_.task.feedback.clear()
+        self.clearTaskError()
 
-        Args:
-            error_code: A code of the action's result.
-            error_msg: Words for people.
-        """
+    def setTaskError(self, error_code: int, error_msg: str) -> None:
+        """Set the error that `getTaskError` returns: `error_code` of the action's result, `error_msg` for people."""
         self._goals_.error = TaskError(error_code, error_msg)
 
     def cancelTask(self) -> None:
         """Cancel the task, and the tracking of a route. Its end is seen by `isTaskComplete`."""
         self.info("Canceling current task.")
         self._goals_.cancel()
+        self.clearPreviousState()
 
     # Planning
 
@@ -404,11 +439,7 @@ class BasicNavigator(Node):
     # Beginning
 
     def setInitialPose(self, initial_pose: PoseStamped) -> None:
-        """Publish the pose from which localization begins.
-
-        Args:
-            initial_pose: The pose, in the map's frame.
-        """
+        """Publish `initial_pose`, in the map's frame, from which localization begins."""
         self.initial_pose_received = False
         self.initial_pose = initial_pose
         self._send_initial_pose_()
@@ -443,14 +474,7 @@ class BasicNavigator(Node):
     # Maps
 
     def changeMap(self, map_filepath: str) -> bool:
-        """Load another map into the map server.
-
-        Args:
-            map_filepath: The map's YAML file, as the server finds it.
-
-        Returns:
-            True if the map was loaded.
-        """
+        """Load another map, the YAML file `map_filepath` as the server finds it; return True if it was loaded."""
         response = self._call_(srv.LoadMap, "map_server/load_map", map_url=map_filepath)
         if response.result == srv.LoadMap.Response.RESULT_SUCCESS:
             self.info("Change map request was successful!")
@@ -473,31 +497,25 @@ class BasicNavigator(Node):
         self._call_(srv.ClearEntireCostmap, "global_costmap/clear_entirely_global_costmap")
 
     def clearCostmapExceptRegion(self, reset_distance: float) -> None:
-        """Clear the local costmap but for a square around the robot.
-
-        Args:
-            reset_distance: Half a side of the square, in metres.
-        """
+        """Clear the local costmap but for a square around the robot, `reset_distance` metres from it to a side."""
         kind, name = srv.ClearCostmapExceptRegion, "local_costmap/clear_costmap_except_region"
         self._call_(kind, name, reset_distance=float(reset_distance))
 
     def clearCostmapAroundRobot(self, reset_distance: float) -> None:
-        """Clear a square of the local costmap around the robot.
-
-        Args:
-            reset_distance: Half a side of the square, in metres.
-        """
+        """Clear a square of the local costmap around the robot, `reset_distance` metres from it to a side."""
         kind, name = srv.ClearCostmapAroundRobot, "local_costmap/clear_costmap_around_robot"
         self._call_(kind, name, reset_distance=float(reset_distance))
 
-    def clearCostmapAroundPose(self, pose: PoseStamped, reset_distance: float) -> None:
-        """Clear a square of the local costmap around a pose.
-
-        Args:
-            pose: Centre of the square.
-            reset_distance: Half a side of the square, in metres.
-        """
+    def clearLocalCostmapAroundPose(self, pose: PoseStamped, reset_distance: float) -> None:
+        """Clear a square of the local costmap around `pose`, `reset_distance` metres from it to a side."""
         kind, name = srv.ClearCostmapAroundPose, "local_costmap/clear_costmap_around_pose"
+        self._call_(kind, name, pose=pose, reset_distance=float(reset_distance))
+
+    clearCostmapAroundPose = clearLocalCostmapAroundPose  # noqa: N815 - its name in Kilted
+
+    def clearGlobalCostmapAroundPose(self, pose: PoseStamped, reset_distance: float) -> None:
+        """Clear a square of the global costmap around `pose`, `reset_distance` metres from it to a side."""
+        kind, name = srv.ClearCostmapAroundPose, "global_costmap/clear_costmap_around_pose"
         self._call_(kind, name, pose=pose, reset_distance=float(reset_distance))
 
     def getGlobalCostmap(self) -> Costmap:
@@ -510,38 +528,28 @@ class BasicNavigator(Node):
         costmap: Costmap = self._call_(srv.GetCostmap, "local_costmap/get_costmap").map
         return costmap
 
+    def toggleCollisionMonitor(self, enable: bool) -> None:
+        """Switch the collision monitor on (`enable`) or off."""
+        response = self._call_(srv.Toggle, "collision_monitor/toggle", enable=enable)
+        if not response.success:
+            self.error(f"Toggle collision monitor request failed! {response.message}")
+
     # Logging
 
     def info(self, msg: str) -> None:
-        """Log at the level INFO.
-
-        Args:
-            msg: Text to log.
-        """
+        """Log `msg` at the level INFO."""
         self.get_logger().info(msg)
 
     def warn(self, msg: str) -> None:
-        """Log at the level WARN.
-
-        Args:
-            msg: Text to log.
-        """
+        """Log `msg` at the level WARN."""
         self.get_logger().warning(msg)
 
     def error(self, msg: str) -> None:
-        """Log at the level ERROR.
-
-        Args:
-            msg: Text to log.
-        """
+        """Log `msg` at the level ERROR."""
         self.get_logger().error(msg)
 
     def debug(self, msg: str) -> None:
-        """Log at the level DEBUG.
-
-        Args:
-            msg: Text to log.
-        """
+        """Log `msg` at the level DEBUG."""
         self.get_logger().debug(msg)
 
     # Used by the methods above
@@ -580,6 +588,6 @@ class BasicNavigator(Node):
     def _task_(self, task: RunningTask, goal: Any, words: str) -> RunningTask | None:
         return task if self._goals_.begin(self._goals_.task, KINDS[task], goal, words) else None
 
-    def _note_checks_(self, disabled: bool) -> None:
-        if disabled:
-            self.warn("Jazzy's servers have no disable_collision_checks: they check for collisions")
+    def _note_lack_(self, name: str, value: Any, instead: str) -> None:
+        if value:
+            self.warn(f"Jazzy's servers have no {name}: {instead}")
