@@ -56,9 +56,13 @@ launch_xml launch_frontend launch_description_sources
 launch_xml launch_frontend.elements entity
 launch_yaml launch_frontend launch_description_sources
 launch_yaml launch_frontend.elements entity
-launch_testing launch_testing.declarations actions event_handlers legacy markers parametrize
-launch_testing launch_testing.handlers asserts io_handler proc_info_handler util
-launch_testing.tools launch_testing.tools output process
+launch_testing launch_testing.arguments parse_arguments print_arguments
+launch_testing launch_testing.markers decorator parametrize ready_to_test_action_timeout
+launch_testing.actions launch_testing.actions gtest pytest ready test
+launch_testing.asserts launch_testing.asserts assert_exit_codes assert_output assert_sequential_output
+launch_testing.event_handlers launch_testing.event_handlers stdout_ready_listener
+launch_testing.tools launch_testing.text text
+launch_testing.util launch_testing.util proc_lookup
 launch_testing_ros launch_testing_ros data_republisher message_pump tools wait_for_topics
 nav2_common nav2_common launch
 """

@@ -6,7 +6,6 @@ before those of `@launch_testing.post_shutdown_test()` classes, which come last.
 
 from __future__ import annotations
 
-import functools
 import inspect
 import os
 import sys
@@ -20,16 +19,17 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.exceptions import RobolinkError
 from robolink.launch.lookup import home_of
 from robolink.launch.ros.launch import LaunchDescription
 from robolink.launch.ros.launch.actions import RegisterEventHandler, TimerAction
-from robolink.launch.ros.launch.bases import Event, EventHandler, LaunchContext
+from robolink.launch.ros.launch.bases import Event, LaunchContext
 from robolink.launch.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
-from robolink.launch.ros.launch.sources import Described, described
-from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
-from robolink.launch.ros.launch_testing.declarations import PARAMETERS, ReadyEvent, ReadyToTest
+from robolink.launch.ros.launch_testing.io_handler import ActiveIoHandler
+from robolink.launch.ros.launch_testing.loader import LaunchTestError, bound, isolated, normalized
+from robolink.launch.ros.launch_testing.markers import POST_SHUTDOWN, launches
+from robolink.launch.ros.launch_testing.proc_info_handler import ActiveProcInfoHandler
 from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
 from robolink.system import waits
@@ -51,17 +51,13 @@ DOWN_WITHIN = 20.0
 """Timeout of the end of all processes, in s: they are killed before."""
 
 
-class LaunchTestError(RobolinkError, RuntimeError):
-    """The processes of a launch test could not be started, or never were ready for its tests."""
-
-
 class LaunchTest:
     """Processes of a launch test, on a domain of their own that the tests share.
 
     Args:
-        describe: Its function generate_test_description.
+        describe: Its function generate_test_description, with its arguments.
         path: Its file.
-        parameters: Arguments of that function.
+        parameters: Arguments that it has by `parametrize`, which tests get, too.
         given: Launch arguments by name.
     """
 
@@ -148,44 +144,20 @@ class LaunchTest:
     def _description(self) -> LaunchDescription:
         """Return the description of the file, with handlers that keep records."""
         with surroundings(home_of(self._path, None)):
-            given = {**self._parameters, "ready_fn": self._ready.set}  # the older way to begin
-            made = bound(self._describe, given)()
-        description, of_file = made if isinstance(made, tuple) else (made, {})
-        self._of_file = dict(of_file)
-        if not isinstance(description, LaunchDescription):
-            kind = type(description).__name__
-            raise DocumentError(
-                f"generate_test_description() returned {kind}, not a LaunchDescription", str(self._path)
-            )
-        self._check_ready(description)
+            description, self._of_file = normalized(self._describe)(ready_fn=self._ready.set)
         going_on = TimerAction(period=FOR_EVER, actions=[])  # without any process, too: tests may start some
         return LaunchDescription([*map(RegisterEventHandler, self._handlers()), going_on, description])
-
-    def _check_ready(self, description: LaunchDescription) -> None:
-        with surroundings(home_of(self._path, None)):
-            entities = [each.entity for each in described(Described(description), LaunchContext())]
-        takes_function = "ready_fn" in inspect.signature(self._describe).parameters
-        if not takes_function and not any(isinstance(each, ReadyToTest) for each in entities):
-            raise DocumentError("its description has no launch_testing.actions.ReadyToTest()", str(self._path))
 
     def _handlers(self) -> list[Any]:
         def note(event: ProcessStarted | ProcessExited, _: LaunchContext) -> None:
             self.proc_info.append(event)
 
         def hear(event: ProcessIO) -> None:
+            event.from_stderr = True  # each line is told as output and as error: the launcher reads both as one
+            event.text = event.text.rstrip(b"\r\n") + b"\n"
             self.proc_output.append(event)
 
-        def begin(event: Event) -> bool:
-            if isinstance(event, ReadyEvent):
-                self._ready.set()
-            return False
-
-        return [
-            OnProcessStart(on_start=note),
-            OnProcessExit(on_exit=note),
-            OnProcessIO(on_stdout=hear),  # each line is told as output and as error
-            EventHandler(matcher=begin),
-        ]
+        return [OnProcessStart(on_start=note), OnProcessExit(on_exit=note), OnProcessIO(on_stdout=hear)]
 
     def _await_ready(self) -> None:
         assert self._launch is not None
@@ -205,21 +177,6 @@ class LaunchTest:
     def _note_exit(self, event: Exited) -> None:
         if event.returncode == 127 and event.pid == 0:
             self._could_not_start.append(event.cause)
-
-
-def bound(function: Callable[..., Any], arguments: Mapping[str, Any]) -> Callable[..., Any]:
-    """Return a `function` with those of the `arguments` that it takes by their names.
-
-    Raises LaunchTestError if it takes another one that it cannot do without.
-    """
-    __tracebackhide__ = True
-    taken = inspect.signature(function).parameters
-    for name, each in taken.items():
-        is_needed = each.default is each.empty and each.kind not in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
-        if is_needed and name not in arguments:
-            what = f"{getattr(function, '__name__', 'a function')} asks for '{name}'"
-            raise LaunchTestError(f"{what}{nearest(name, arguments) or ''}: there is {', '.join(arguments)}")
-    return functools.partial(function, **{name: each for name, each in arguments.items() if name in taken})
 
 
 def _domain(stack: ExitStack) -> int:
@@ -264,13 +221,12 @@ class LaunchTestModule(pytest.Module):
                 self.own_markers.append(mark)
                 self.keywords[mark.name] = mark
         self._runs: list[LaunchTest] = []
-        for parameters in getattr(describe, PARAMETERS, [{}]):
-            run = LaunchTest(describe, self.path, parameters, launch_arguments(self.config))
+        for one, parameters in launches(describe):
+            run = LaunchTest(one, self.path, parameters, launch_arguments(self.config))
             self._runs.append(run)
             ending = f"[{'-'.join(map(str, parameters.values()))}]" if parameters else ""
             for cls in sorted(_test_classes(self.obj), key=_is_after_shutdown):
-                made = type(cls.__name__, (cls,), {"__module__": cls.__module__, "__qualname__": cls.__qualname__})
-                yield LaunchTestClass.from_parent(self, name=cls.__name__ + ending, tests=made, run=run)
+                yield LaunchTestClass.from_parent(self, name=cls.__name__ + ending, tests=isolated(cls), run=run)
 
     def only(self, run: LaunchTest) -> None:
         """End the processes of all other launches of this file."""
@@ -299,7 +255,7 @@ def _test_classes(module: Any) -> Iterator[type[unittest.TestCase]]:
 
 
 def _is_after_shutdown(cls: type) -> bool:
-    return bool(getattr(cls, "__post_shutdown_test__", False))
+    return bool(getattr(cls, POST_SHUTDOWN, False))
 
 
 class LaunchTestClass(pytest.Collector):
@@ -354,7 +310,7 @@ class LaunchTestItem(pytest.Item):
         case = self.parent.tests(self.name)
         arguments = self.parent.run.arguments
         for name in ("setUp", self.name, "tearDown"):
-            setattr(case, name, _bound_method(case, name, arguments))
+            setattr(case, name, bound(getattr(case, name), arguments))
         outcome = _Outcome()
         case.run(outcome)
         outcome.tell()
@@ -382,12 +338,6 @@ def _shown(error: BaseException, config: pytest.Config) -> Any:
         return f"{type(error).__name__}: {error}"
     option = config.option
     return info.getrepr(showlocals=option.showlocals, style="short" if option.tbstyle == "short" else "long")
-
-
-def _bound_method(case: unittest.TestCase, name: str, arguments: Mapping[str, Any]) -> Any:
-    method = getattr(case, name)
-    made = bound(method, arguments)
-    return made if getattr(made, "keywords", None) else method  # one that asks for nothing keeps its attributes
 
 
 def _users(step: TracebackType | None) -> TracebackType | None:

@@ -13,10 +13,11 @@ ROS_NAMES = {
     "CompositeDiagnosticTask": "diagnostic_updater",
     "DiagnosticTaskVector": "diagnostic_updater",
     "HeaderlessTopicDiagnostic": "diagnostic_updater",
+    "IoHandler": "launch_testing",
     "LaunchConfigurationEquals": "launch.conditions",
+    "ProcInfoHandler": "launch_testing",
     "SequentialReader": "rosbag2_py",
     "SequentialWriter": "rosbag2_py",
-    "TestProcess": "launch_testing.actions",
     "TimeSynchronizer": "message_filters",
     "TopicDiagnostic": "diagnostic_updater",
 }

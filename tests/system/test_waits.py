@@ -28,7 +28,7 @@ from robolink.interfaces.example_interfaces.action import Fibonacci
 from robolink.interfaces.std_msgs.msg import Empty as EmptyMsg
 from robolink.interfaces.std_srvs.srv import Empty
 from robolink.interfaces.tf2_msgs.action import LookupTransform
-from robolink.launch.ros.launch_testing.handlers import ActiveIoHandler, ActiveProcInfoHandler
+from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler
 from robolink.launch.ros.launch_testing_ros import WaitForTopics
 from robolink.parameter_client import AsyncParameterClient
 from robolink.running.timebase import SystemTime

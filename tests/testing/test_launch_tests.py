@@ -155,7 +155,7 @@ def test_failures_show_the_tests_own_lines(pytester: pytest.Pytester) -> None:
             "*self.assertEqual(test_args*",
             "E*AssertionError: {'a': '2'} != {'a': '1'}",
             ">*proc_output.assertWaitFor*never*",
-            "E*AssertionError: waited in vain for the output 'never'",
+            "E*AssertionError: Waiting for output timed out: 'never' *",
             "*in a part",
             "it was expected to fail, and did not",
             "E*AssertionError: python ended with 3, and [[]0[]] was expected",
@@ -199,7 +199,7 @@ def test_a_test_starts_and_ends_processes(pytester: pytest.Pytester) -> None:
 
 
 MISTAKES = {
-    "LaunchDescription([])": "its description has no launch_testing.actions.ReadyToTest()",
+    "LaunchDescription([])": "*must return a LaunchDescription containing a ReadyToTest action",
     "[]": "generate_test_description() returned list, not a LaunchDescription",
     "LaunchDescription([ReadyToTest(), Node(executable='x', nmae='y')])": "Node has no argument 'nmae' (did you mean",
     "1 / 0": "E*ZeroDivisionError: division by zero",

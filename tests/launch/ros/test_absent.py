@@ -192,17 +192,8 @@ class AfterShutdown(unittest.TestCase):
 
 def test_a_launch_file_that_is_a_test_launches(package: Path) -> None:
     system = read(package, TESTED)
-    assert [each.name for each in system.entries] == ["talker"]
-    assert system.notes == ["left out: a GTest, since robolink runs no programs of tests"]
-
-
-def test_the_older_test_runner_tells_of_the_one_that_is_here(package: Path) -> None:
-    with pytest.raises(DocumentError, match=r"no LaunchTestService here: 'pytest FILE' runs files with gen") as caught:
-        read(
-            package,
-            "import launch_testing\nlaunch_testing.legacy.LaunchTestService()\ndef generate_launch_description(): 0",
-        )
-    assert caught.value.line == FIRST + 1
+    assert [each.name for each in system.entries] == ["talker", "python"]
+    assert [each.partition(": ")[2] for each in system.notes] == ["left out: no program 'x' is on the PATH"]
 
 
 def test_a_launch_test_that_is_launched_tells_what_runs_it(package: Path) -> None:

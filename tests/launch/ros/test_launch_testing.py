@@ -14,10 +14,8 @@ from robolink.launch.ros import launch_testing
 from robolink.launch.ros.launch.actions import ExecuteProcess
 from robolink.launch.ros.launch.bases import LaunchArgumentError
 from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
-from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler, tools
-from robolink.launch.ros.launch_testing import handlers as asserts
-from robolink.launch.ros.launch_testing.declarations import PARAMETERS
-from robolink.launch.ros.launch_testing.handlers import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
+from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler, asserts, tools
+from robolink.launch.ros.launch_testing.util import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
 
 
 def process(name: str, *words: str) -> ExecuteProcess:
@@ -35,14 +33,16 @@ def details(action: ExecuteProcess) -> dict[str, Any]:
 def output(*lines: tuple[ExecuteProcess, str]) -> ActiveIoHandler:
     made = ActiveIoHandler()
     for action, text in lines:
-        made.append(ProcessIO(text=text.encode(), fd=1, **details(action)))
+        made.append(ProcessIO(text=text.encode(), fd=STREAMS[text.endswith("!\n")], **details(action)))
     return made
 
 
+STREAMS = {False: 1, True: 2}
+"""Standard output; a line that ends with an exclamation mark is an error."""
 NAMED = process("wheel", "/opt/bin/driver")
 NAMED.process_details = {**details(NAMED), "cmd": ["/opt/bin/driver", "-v"]}
 ADA, BOB = process("talker-ada", "--fast", "x"), process("talker-bob")
-LINES = [(ADA, "one two\n"), (BOB, "other\n"), (ADA, "\x1b[33mthree\x1b[0m\n"), (ADA, "four")]
+LINES = [(ADA, "one two\n"), (BOB, "other\n"), (ADA, "oh!\n"), (ADA, "\x1b[33mthree\x1b[0m\nfo"), (ADA, "ur")]
 
 
 @pytest.mark.parametrize(
@@ -54,18 +54,20 @@ LINES = [(ADA, "one two\n"), (BOB, "other\n"), (ADA, "\x1b[33mthree\x1b[0m\n"), 
         (re.compile("^x"), False),
         (["one two", "four"], True),
         (["four", "one two"], False),
-        (["one two", "fou"], False),
+        (["one two", "fou"], True),
+        (["two", re.compile("r$")], True),
+        ("oh", False),
         ([re.compile("two"), re.compile("t")], True),
         ([re.compile("three"), re.compile("two")], False),
     ],
 )
 def test_what_is_expected_of_an_output(expected: object, is_there: bool) -> None:
-    assert output(*LINES).waitFor(expected, ADA, timeout=0) is is_there
+    assert output(*LINES).waitFor(expected, ADA, timeout=0, stream="stdout") is is_there
 
 
-@pytest.mark.parametrize("expected", [3, [], [3], ["x", re.compile("y")]])
+@pytest.mark.parametrize("expected", [3, [], [3]])
 def test_what_cannot_be_expected_is_refused(expected: object) -> None:
-    with pytest.raises(ValueError, match="the expected output is a text, a pattern or a list of either, got"):
+    with pytest.raises(ValueError, match="the expected text is a text, a pattern or several of either, got"):
         output(*LINES).waitFor(expected, timeout=0)
 
 
@@ -73,16 +75,31 @@ def test_outputs_are_told_by_process_or_all_together() -> None:
     heard = output(*LINES)
     assert (heard.processes(), heard.process_names()) == ([ADA, BOB], ["talker-ada", "talker-bob"])
     assert [each.text for each in heard["talker-bob"]] == [each.text for each in heard[BOB]] == [b"other\n"]
-    assert heard.waitFor("other", timeout=0)
-    assert not heard.waitFor("\x1b[33mthree", timeout=0)
-    heard.assertWaitFor("\x1b[33mthree", ADA, strip_ansi_escape_sequences=False)
-    heard.assertWaitFor("ONE", ADA, output_filter=str.upper)
-    with pytest.raises(AssertionError, match="waited in vain for the output 'three'"):
-        heard.assertWaitFor("three", "bob", timeout=0)
-    with pytest.raises(AssertionError, match="'nine' is not in the output of talker-ada, talker-bob"):
+    assert heard.waitFor("other", timeout=0, stream="stdout")
+    assert heard.waitFor("oh!", timeout=0)
+    assert not heard.waitFor("\x1b[33mthree", timeout=0, stream="stdout")
+    heard.assertWaitFor("\x1b[33mthree", ADA, strip_ansi_escape_sequences=False, stream="stdout")
+    heard.assertWaitFor("OH", ADA, output_filter=str.upper)
+    with pytest.raises(AssertionError, match="Waiting for output timed out: 'oh' was not written to stderr"):
+        heard.assertWaitFor("oh", "bob", timeout=0)
+    with pytest.raises(AssertionError, match="Did not find 'nine' in the stdout of talker-ada, talker-bob"):
         asserts.assertInStdout(heard, "nine", None)
-    with pytest.raises(NoMatchingProcessException, match="nothing is known of 'cy', only of: talker-ada, talker-bob"):
+    asserts.assertInStderr(heard, "oh", ADA)
+    with pytest.raises(ValueError, match="a stream is stdout or stderr, got 'stdin'"):
+        asserts.assertInStream(heard, "oh", ADA, stream="stdin")
+    with pytest.raises(ValueError, match="output_filter is a function, got int"):
+        asserts.assertInStream(heard, "oh", ADA, output_filter=3)  # type: ignore[arg-type]
+    with pytest.raises(NoMatchingProcessException, match="any processes matching 'cy', only: talker-ada --fast x, tal"):
         heard.assertWaitFor("x", "cy", timeout=0)
+
+
+def test_a_process_that_has_written_nothing_is_known_by_its_name() -> None:
+    heard = ActiveIoHandler()
+    heard.track("talker-ada")
+    assert (heard.process_names(), heard.processes()) == (["talker-ada"], [])
+    assert heard["talker-ada"] == heard[ADA] == []
+    with pytest.raises(KeyError, match="talker-bob"):
+        heard[BOB]
 
 
 def test_a_test_waits_for_what_comes_later() -> None:
@@ -95,18 +112,18 @@ def test_a_test_waits_for_what_comes_later() -> None:
 
     thread = threading.Timer(0.05, happen)
     thread.start()
-    heard.assertWaitFor("late", timeout=10)
+    heard.assertWaitFor("late", timeout=10, stream="stdout")
     ended.assertWaitForStartup(ADA)
     ended.assertWaitForShutdown("ada")
     thread.join()
     assert (ended["ada"], ended.process_names()) == (ended[ADA], ["talker-ada"])
-    with pytest.raises(AssertionError, match="waited in vain for talker-bob to start"):
+    with pytest.raises(AssertionError, match="Timed out waiting for process 'talker-bob' to start"):
         ended.assertWaitForStartup(BOB, timeout=0)
 
 
 def test_exit_codes() -> None:
     ended = ActiveProcInfoHandler()
-    with pytest.raises(NoMatchingProcessException, match="nothing is known of any process, only of: none"):
+    with pytest.raises(NoMatchingProcessException, match="No data recorded for any process"):
         asserts.assertExitCodes(ended)
     ended.append(ProcessStarted(**details(BOB)))
     with pytest.raises(AssertionError, match="talker-bob has not ended"):
@@ -134,7 +151,7 @@ def test_processes_are_found_by_name_and_arguments(name: str, cmd_args: object, 
 
 
 def test_a_process_is_found_by_its_program_too() -> None:
-    heard = output(*LINES, (NAMED, "x"))
+    heard = output(*LINES, (NAMED, "x\n"))
     assert (
         resolveProcesses(heard, process="driver") == resolveProcesses(heard, process="wheel", cmd_args="-v") == [NAMED]
     )
@@ -144,7 +161,7 @@ def test_a_process_is_found_by_its_program_too() -> None:
 
 def test_names_that_are_no_single_processs_are_refused() -> None:
     heard = output(*LINES)
-    with pytest.raises(ValueError, match="several processes are called 'talker': talker-ada, talker-bob"):
+    with pytest.raises(ValueError, match="Found multiple processes matching 'talker': talker-ada --fast x, talker-bob"):
         resolveProcesses(heard, process="talker")
     assert resolveProcesses(heard, process="talker", strict_proc_matching=False) == [ADA, BOB]
     with pytest.raises(TypeError, match="a process is an action or a name, got int"):
@@ -155,8 +172,9 @@ def test_texts_that_follow_each_other() -> None:
     with asserts.assertSequentialStdout(output(*LINES), ADA) as checker:
         checker.assertInStdout("one")
         checker.assertInStdout("three")
-        with pytest.raises(AssertionError, match=r"'two' is not in what is left of the output: .*four"):
-            checker.assertInStdout("two")
+        with pytest.raises(AssertionError, match=r"(?s)'two' not found behind the last match, .*oh!\nthree\nfour"):
+            checker.assertInText("two")
+        checker.assertInStdout("four")
 
 
 def test_filters_and_files_of_output(tmp_path: Path) -> None:
@@ -177,8 +195,8 @@ def test_parameters_of_several_launches() -> None:
     def describe(a: int, b: int, c: str) -> str:
         return f"{a}{b}{c}"
 
-    rows = getattr(describe, PARAMETERS)
-    assert [describe(**each) for each in rows] == ["12x", "34x"]
+    assert [function() for function, _ in describe()] == ["12x", "34x"]
+    assert [values for _, values in describe()] == [{"c": "x", "a": 1, "b": 2}, {"c": "x", "a": 3, "b": 4}]
     with pytest.raises(LaunchArgumentError, match="parametrize has 2 names, and a row with 1 values"):
         launch_testing.parametrize("a, b", [1])
 
@@ -197,3 +215,16 @@ def test_retries() -> None:
     with pytest.raises(AssertionError):
         third_time(9)
     assert len(tries) == 3
+
+
+def test_there_may_be_time_between_retries(monkeypatch: pytest.MonkeyPatch) -> None:
+    slept: list[float] = []
+    monkeypatch.setattr("time.sleep", slept.append)
+
+    @launch_testing.markers.retry_on_failure(times=3, delay=0.5)
+    def never() -> None:
+        raise AssertionError
+
+    with pytest.raises(AssertionError):
+        never()
+    assert slept == [0.5, 0.5]

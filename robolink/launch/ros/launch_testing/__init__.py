@@ -1,53 +1,42 @@
-"""launch_testing: launch files that are tests, run by `pytest FILE` with robolink's plugin, or by `launch_test FILE`.
+"""launch_testing: launch files that are tests, and what runs them.
 
-These are the names that such a file imports; `robolink.testing` starts its processes and runs its test classes.
+`pytest FILE` runs such a file with robolink's plugin, `launch_test FILE` with the runner here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
-
-from robolink.launch.ros.launch_testing import declarations as actions
-from robolink.launch.ros.launch_testing import declarations as event_handlers
-from robolink.launch.ros.launch_testing import declarations as legacy
-from robolink.launch.ros.launch_testing import declarations as markers
-from robolink.launch.ros.launch_testing import handlers as asserts
-from robolink.launch.ros.launch_testing import handlers as util
-from robolink.launch.ros.launch_testing import tools
-from robolink.launch.ros.launch_testing.declarations import parametrize
-from robolink.launch.ros.launch_testing.handlers import (
-    ActiveIoHandler,
-    ActiveProcInfoHandler,
-    IoHandler,
-    ProcInfoHandler,
+from robolink.launch.ros.launch_testing import (
+    actions,
+    asserts,
+    event_handlers,
+    legacy,
+    loader,
+    markers,
+    test_runner,
+    tools,
+    util,
 )
+from robolink.launch.ros.launch_testing.io_handler import ActiveIoHandler, IoHandler
+from robolink.launch.ros.launch_testing.markers import parametrize, post_shutdown_test, ready_to_test_action_timeout
+from robolink.launch.ros.launch_testing.proc_info_handler import ActiveProcInfoHandler, ProcInfoHandler
+from robolink.launch.ros.launch_testing.ready_aggregator import ReadyAggregator
 
 __all__ = [
     "ActiveIoHandler",
     "ActiveProcInfoHandler",
     "IoHandler",
     "ProcInfoHandler",
+    "ReadyAggregator",
     "actions",
     "asserts",
     "event_handlers",
     "legacy",
+    "loader",
     "markers",
     "parametrize",
     "post_shutdown_test",
+    "ready_to_test_action_timeout",
+    "test_runner",
     "tools",
     "util",
 ]
-
-
-T = TypeVar("T", bound=type)
-
-
-def post_shutdown_test() -> Callable[[T], T]:
-    """Return a decorator by which a class of tests runs after the processes have ended."""
-
-    def decorate(cls: T) -> T:
-        cls.__post_shutdown_test__ = True  # type: ignore[attr-defined]
-        return cls
-
-    return decorate
