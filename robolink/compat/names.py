@@ -11,7 +11,9 @@ launch launch.bases action condition event event_handler launch_context launch_d
 launch launch.bases some_entities_type some_substitutions_type substitution
 launch launch.sources invalid_launch_file_error launch_description launch_description_source
 launch launch.sources launch_description_sources
-launch launch launch_introspector launch_service
+launch launch launch_introspector
+launch launch.logging logging
+launch.logging launch.log_handlers handlers
 launch launch.processes descriptions descriptions.executable
 launch.actions launch.actions emit_event for_loop group_action log_info
 launch.actions launch.processes execute_local execute_process

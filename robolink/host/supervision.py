@@ -276,7 +276,7 @@ class Supervision:
         if isinstance(request, Add):
             return self._added(request.process)
         if isinstance(request, Stop):
-            return self.policy.stop_one(request.name, now)
+            return self.policy.stop_one(request.name, now, is_interrupted=request.is_interrupted)
         if isinstance(request, Signal):
             return [] if request.name not in self.host.programs else self._signalled(request)
         if isinstance(request, Tell):

@@ -21,9 +21,14 @@ class Add(Generic[T]):
 
 @dataclass(frozen=True)
 class Stop:
-    """Request: stop the process `name` in order; the others go on."""
+    """Request: stop the process `name` in order; the others go on.
+
+    One that `is_interrupted` has been sent a SIGINT already, by somebody else: it gets the next step if that was not
+    enough.
+    """
 
     name: str
+    is_interrupted: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,8 +80,8 @@ class Director(Protocol[T]):
     def left_out(self, name: str, now: float) -> Sequence[Request[T]]:
         """Handle that a process is not started, since it cannot run here."""
 
-    def line(self, name: str, line: bytes, now: float) -> Sequence[Request[T]]:
-        """Handle a line of a process's output."""
+    def line(self, name: str, line: bytes, now: float, fd: int | None = None) -> Sequence[Request[T]]:
+        """Handle a line of a process's output; a piece of its output (1) or errors (2), where these are apart: `fd`."""
 
     def stopping(self, now: float) -> Sequence[Request[T]]:
         """Handle that the whole system is about to end."""

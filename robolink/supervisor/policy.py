@@ -61,13 +61,15 @@ class Rules:
     """Rules of one process: `respawn` for restarts, `on_exit` for the meaning of its end for the system.
 
     One that is `held` starts only when it is released. `awaits` are the processes without which it will never be
-    released; it may wait for other things besides.
+    released; it may wait for other things besides. `patience` is the time from SIGINT to SIGTERM, and from there to
+    SIGKILL, in seconds, when it alone is stopped; None is that of the whole system.
     """
 
     respawn: Restarts = field(default_factory=Restarts)
     on_exit: OnExit = "shutdown"
     held: bool = False
     awaits: frozenset[str] = frozenset()
+    patience: tuple[float, float] | None = None
 
 
 def exit_code(returncode: int) -> int:
@@ -325,8 +327,8 @@ class Policy:
         is_held = self.processes[name].state == "held"
         return "it is not started yet, since it waits for something else" if is_held else ""
 
-    def stop_one(self, name: str, now: float) -> list[Action]:
-        """Handle a request to stop one process; the others go on."""
+    def stop_one(self, name: str, now: float, *, is_interrupted: bool = False) -> list[Action]:
+        """Handle a request to stop one process; the others go on. Somebody else may have interrupted it already."""
         each = self.processes[name]
         if self.why_not_stopped(name):
             return []
@@ -334,7 +336,8 @@ class Policy:
             each.is_restart = False
             return [Say(f"{name} is not started again")]
         if each.state == "running":
-            return [Say(f"stopping {name}"), *self._one_harder(each, now)]
+            steps = self._one_harder(each, now)
+            return [Say(f"stopping {name}"), *([] if is_interrupted else steps)]
         again = " again" if each.starts else ""
         _move(each, "stopped", now)
         return [Say(f"{name} is not started{again}"), *self._only_held(now)]
@@ -429,17 +432,25 @@ class Policy:
     def _one_harder(self, each: Tracked, now: float) -> list[Action]:
         if each.step is None:
             _move(each, "stopping", now)
-            each.step, late = Step.INTERRUPT, []
+            late = []
+            each.step = Step.INTERRUPT
         else:
-            each.step, late = Step(each.step + 1), [self._late(each.name)]
+            late = [self._late(each.name, patience=self._patience_of(each, each.step))]
+            each.step = Step(each.step + 1)
         if each.step is Step.GIVE_UP:  # it stays as it is, and may still end
             each.step, each.due = Step.KILL, None
             return [Say(f"{each.name} cannot be killed", "ERROR")]
-        each.due = now + self._patience
+        each.due = now + self._patience_of(each, each.step)
         return [*late, Ask(each.name, each.step)]
 
-    def _late(self, *names: str) -> Say:
-        return Say(f"still running after {self._patience:g} s: {', '.join(names)}", "WARN")
+    def _patience_of(self, each: Tracked, step: Step) -> float:
+        """Return the time in seconds between this step of stopping a process, and the next."""
+        own = each.rules.patience
+        return self._patience if own is None or step > Step.TERMINATE else own[step]
+
+    def _late(self, *names: str, patience: float | None = None) -> Say:
+        seconds = self._patience if patience is None else patience
+        return Say(f"still running after {seconds:g} s: {', '.join(names)}", "WARN")
 
 
 def _tracked(name: str, rules: Rules) -> Tracked:

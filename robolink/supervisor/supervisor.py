@@ -124,9 +124,9 @@ class Supervisor:
             self._dispatcher.ended(self._policy.code, self._policy.alive)
         return self._policy.code
 
-    def stop(self) -> None:
-        """Stop the whole system; returns at once."""
-        self._interrupt()
+    def stop(self, *, in_hurry: bool = False) -> None:
+        """Stop the whole system; returns at once. If it is stopping already, `in_hurry` goes on to the next step."""
+        self._interrupt(in_hurry=in_hurry)
 
     def restart(self, name: str) -> None:
         """Stop the process `name` in order and start it again; if it does not run, start it. Raises NotFoundError."""
@@ -240,7 +240,7 @@ class Supervisor:
                 self._dispatcher.add(each.process.name)
                 actions += self._policy.add(each.process.name, each.process.rules, now)
             elif isinstance(each, Stop):
-                actions += self._policy.stop_one(each.name, now)
+                actions += self._policy.stop_one(each.name, now, is_interrupted=each.is_interrupted)
             elif isinstance(each, Signal):
                 if each.name in self._children:
                     self._children[each.name].signal(each.number)
@@ -293,11 +293,11 @@ class Supervisor:
         # Only then: one that ends at once would end before it started.
         child.watch(self._line, lambda name, code: self._events.put(partial(self._exited, name, code)))
 
-    def _line(self, name: str, line: bytes) -> None:
-        """Pass on a line of a process; called on a thread of its own."""
+    def _line(self, name: str, line: bytes, fd: int | None = None) -> None:
+        """Pass on a line of a process, or a piece of one of its streams; called on a thread of its own."""
         self._dispatcher.line(name, line)
         if self._director is not None and self._director.hears_lines:
-            self._events.put(lambda now: self._ask(lambda director: director.line(name, line, now), now))
+            self._events.put(lambda now: self._ask(lambda director: director.line(name, line, now, fd), now))
 
     def _exited(self, name: str, returncode: int, now: float, cause: str = "") -> list[Action]:
         child = self._children.pop(name, None)

@@ -105,6 +105,8 @@ class EntryMaker:
         naming = Naming(name, namespace_of(action.requested_namespace, context))
         requested = Requested(program, executable, naming, action.parameters, action.remappings, action.place)
         action.expanded_name = requested.full_name
+        action.process_description.settle([executable, *arguments], context)
+        action.describe_process()
         words = list(texts_of(action.ros_arguments, context))
         entry = self._entry_of(requested, [words, *arguments], self._shared(action, context), context)
         return entry if program.source is not None else _compiled(entry, program.path)
@@ -118,6 +120,9 @@ class EntryMaker:
             process: Name of the process.
             context: The context with whose values it is performed.
         """
+        if action.process_details is None:
+            action.process_description.settle([process], context)
+            action.describe_process()
         settings = self._shared(action, context)
         settings.pop("prefix", None)
         return self._entry_of(requested, [[]], {**settings, "process": process}, context)
@@ -163,7 +168,8 @@ class EntryMaker:
     # Commands
 
     def _command(self, action: ExecuteLocal, context: LaunchContext) -> Entry | None:
-        words = list(texts_of(action.process_description.cmd, context))
+        described = action.process_description
+        words = described.final_words
         if not words or not words[0].strip():
             raise LaunchError("cmd has no program")
         if action.shell:
@@ -177,8 +183,7 @@ class EntryMaker:
             run = found
         settings = self._shared(action, context)
         run = [*settings.pop("prefix", ()), *run]
-        given = action.process_description.name
-        name = performed(context, given) if given is not None else _stem(words)
+        name = performed(context, described.name) if described.name is not None else _stem(words)
         return self._entry(action.place, f"/{name}", NodeToStart(run=run, **settings), None, frozenset(), [])
 
     # Both
@@ -208,12 +213,12 @@ class EntryMaker:
         """Return the settings of a process, of nodes and commands alike."""
         described = action.process_description
         settings: dict[str, Any] = {
-            "env": _environment(action, context),
-            "cwd": "" if described.cwd is None else performed(context, described.cwd),
+            "env": {**context.changed_environment(), **described.final_variables},
+            "cwd": described.final_cwd or "",
             "respawn": _respawn(action, context),
             "on_exit": _on_exit(action),
         }
-        words = [] if described.prefix is None else split_words(performed(context, described.prefix))
+        words = described.final_prefix
         if words and shutil.which(words[0]) is not None:
             settings["prefix"] = words
         elif words and PurePath(words[0]).name in TERMINALS and not self.has_keyboard:
@@ -329,16 +334,6 @@ def _remappings(given: Iterable[Any], context: LaunchContext) -> dict[str, str]:
             raise LaunchError(f"remapping '{shown(match)}' to '{shown(replacement)}': {error}") from None
         found.setdefault(match, replacement)
     return found
-
-
-def _environment(action: ExecuteLocal, context: LaunchContext) -> dict[str, str | None]:
-    """Return the variables of a process that differ from the launcher's own, None for one that it lacks."""
-    described = action.process_description
-    changed = context.changed_environment()
-    for given in (described.env, described.additional_env):
-        for name, value in (given or {}).items():
-            changed[performed(context, name)] = performed(context, value)
-    return changed
 
 
 def _respawn(action: ExecuteLocal, context: LaunchContext) -> Respawn:

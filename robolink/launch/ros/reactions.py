@@ -8,6 +8,7 @@ from __future__ import annotations
 import heapq
 import itertools
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.exceptions import DocumentError
@@ -40,10 +41,12 @@ class Reactions(Generic[T]):
     Args:
         visit: Visit of the file, up to the first timer or event.
         stage: Runner of the system.
+        outlives: True for a LaunchService: the end of the launch is an event like others, after which it goes on until
+            nothing is left.
     """
 
-    def __init__(self, visit: Visit, stage: Stage[T]) -> None:
-        self._visit, self._stage = visit, stage
+    def __init__(self, visit: Visit, stage: Stage[T], *, outlives: bool = False) -> None:
+        self._visit, self._stage, self._outlives = visit, stage, outlives
         self._lifecycles: Lifecycles | None = None
         self._timers: list[tuple[float, int, TimerAction, dict[str, Any]]] = []
         self._numbers = itertools.count()
@@ -70,7 +73,21 @@ class Reactions(Generic[T]):
         """Time of the next timer."""
         while self._timers and self._timers[0][2].is_canceled:
             heapq.heappop(self._timers)
-        return self._timers[0][0] if self._timers and not self._is_stopping else None
+        return self._timers[0][0] if self._timers and (self._outlives or not self._is_stopping) else None
+
+    def action_of(self, name: str) -> ExecuteLocal | None:
+        """Return the action that has started, or will start, a process; None for none."""
+        return self._actions.get(name)
+
+    @property
+    def shutdown_event(self) -> events.Shutdown:
+        """The event of the end of the launch, the last one that came."""
+        return self._shutdown
+
+    @property
+    def alive(self) -> list[str]:
+        """Names of the processes that run, in the order in which they were requested."""
+        return [name for name in self._actions if name in self._alive]
 
     def begin(self, now: float) -> list[Request[T]]:
         """Begin the timers, and handle what the file has emitted already."""
@@ -84,7 +101,7 @@ class Reactions(Generic[T]):
             return []
         self._alive.add(name)
         details = _details(action, name, pid)
-        action.process_details = {**details, "action": action}
+        action.process_details = {"action": action, **details}
         return self._following(now, lambda: self._emit(process_events.ProcessStarted(action=action, **details)))
 
     def exited(self, name: str, returncode: int, now: float) -> list[Request[T]]:
@@ -107,16 +124,16 @@ class Reactions(Generic[T]):
         action = self._actions.get(name)
         return [] if action is None else self._following(now, lambda: self._go_on_without(action))
 
-    def line(self, name: str, line: bytes, now: float) -> list[Request[T]]:
-        """Handle a line of a process; the launcher reads standard output and errors as one."""
+    def line(self, name: str, line: bytes, now: float, fd: int | None = None) -> list[Request[T]]:
+        """Handle a line of a process; `robolink launch` reads standard output and errors as one."""
         action = self._actions.get(name)
         if action is None:
             return []
         details = _details(action, name, (action.process_details or {}).get("pid", 0))
 
         def emit() -> None:
-            for fd in (1, 2):
-                self._emit(process_events.ProcessIO(action=action, text=line, fd=fd, **details))
+            for each in (1, 2) if fd is None else (fd,):
+                self._emit(process_events.ProcessIO(action=action, text=line, fd=each, **details))
 
         return self._following(now, emit)
 
@@ -127,6 +144,10 @@ class Reactions(Generic[T]):
             self._shutdown = events.Shutdown(reason="idle")
         return self._following(now, lambda: self._handle(self._shutdown))
 
+    def settle(self, now: float) -> list[Request[T]]:
+        """Handle what was emitted since the last look."""
+        return self._following(now, lambda: None)
+
     def woken(self, now: float) -> list[Request[T]]:
         """Carry out the timers whose time has come."""
 
@@ -135,6 +156,7 @@ class Reactions(Generic[T]):
                 _, _, timer, around = heapq.heappop(self._timers)
                 self._visit.run_within(timer.actions, around)
                 self._visit.context.completed(timer)
+                timer.complete()
 
         return self._following(now, fire)
 
@@ -166,7 +188,7 @@ class Reactions(Generic[T]):
             self._take_over(now)
             if not context.emitted:
                 return
-            event = context.emitted.pop(0)
+            event = context.emitted.get_nowait()
             with self._visit.placing(None):
                 self._carry_out(event)
         raise DocumentError(f"it never ends: more than {MOST_EVENTS:,} events follow from each other")
@@ -174,6 +196,8 @@ class Reactions(Generic[T]):
     def _take_over(self, now: float) -> None:
         """Turn what the visit has requested since the last look into requests and timers."""
         visit = self._visit
+        with visit.placing(None):
+            visit.take()
         said, visit.context.said[:] = list(visit.context.said), []
         self._requests += map(Tell, said)
         for timer, around in visit.timers:
@@ -187,12 +211,16 @@ class Reactions(Generic[T]):
         if started and not self._is_stopping:
             self._requests += map(Add, self._stage.plan([each.entry for each in started]))
             self._live(started)
+        elif started:
+            for each in started:
+                each.action.complete()
         finished, visit.context.finished = visit.context.finished, []
         complete = [events.ExecutionComplete(action=each) for each in finished]
-        visit.context.emitted += [each for each in complete if visit.context.would_handle_event(each)]
+        visit.context.emitted.extend(each for each in complete if visit.context.would_handle_event(each))
         absent, visit.absent[:] = list(visit.absent), []
         for action in absent:
             self._go_on_without(action)
+            action.complete()
 
     def _go_on_without(self, action: ExecuteLocal) -> None:
         """Let what waits for a process that is left out go on, as if it had started and ended well."""
@@ -213,6 +241,8 @@ class Reactions(Generic[T]):
         if isinstance(event, events.Shutdown):
             self._shutdown = event
             self._requests.append(End(f"the launch file ends the system: {event.reason}"))
+            if self._outlives:
+                self._outlive(event)
             return
         if isinstance(event, process_events.SignalProcess):
             self._requests += [Signal(name, int(event.signal)) for name in self._meant(event)]
@@ -222,6 +252,16 @@ class Reactions(Generic[T]):
             self._visit.run([event.launch_description])
         elif isinstance(event, ChangeState):
             self._change(event)
+        self._handle(event)
+
+    def _outlive(self, event: events.Shutdown) -> None:
+        """End the launch as a LaunchService does: no process is started any more, and few timers go on."""
+        self._is_stopping = self._visit.context.is_shutdown = True
+        for _, _, timer, around in self._timers:
+            with self._visit.placing(timer):
+                ends = self._visit.within(around, partial(is_true, self._visit.context, timer.cancel_on_shutdown))
+            if ends:
+                timer.cancel()
         self._handle(event)
 
     # Nodes with a lifecycle
@@ -269,21 +309,27 @@ class Reactions(Generic[T]):
         for handler in list(self._visit.context.handlers):
             with self._visit.placing(handler):
                 is_meant = handler.matches(event)
-            if is_meant and (not self._is_stopping or isinstance(handler, OnShutdown) or event is not self._shutdown):
+            is_for_all = self._outlives or not self._is_stopping or event is not self._shutdown
+            if is_meant and (is_for_all or isinstance(handler, OnShutdown)):
                 self._react(handler, event)
 
     def _react(self, handler: BaseEventHandler, event: Event) -> None:
         context = self._visit.context
-        with self._visit.placing(handler):
-            entities = self._visit.within(handler.around, lambda: entities_in(handler.handle(event, context)))
-        self._visit.check(handler, entities)
-        self._visit.run_within(entities, handler.around)
+        context._push_locals()
+        try:
+            with self._visit.placing(handler):
+                entities = self._visit.within(handler.around, lambda: entities_in(handler.handle(event, context)))
+            self._visit.check(handler, entities)
+            self._visit.run_within(entities, handler.around)
+        finally:
+            context._pop_locals()
 
 
 def _details(action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
-    described = action.process_description
-    cmd = [each if isinstance(each, str) else getattr(each, "text", str(each)) for each in described.cmd]
-    return {"name": name, "cmd": cmd, "cwd": None, "env": None, "pid": pid}
+    """Return what the events about a process say of it."""
+    known = {"name": name, "cmd": [], "cwd": None, "env": None, **(action.process_details or {}), "pid": pid}
+    known.pop("action", None)
+    return known
 
 
 def _starts_only(found: Sequence[LaunchDescriptionEntity]) -> bool:

@@ -106,7 +106,7 @@ class ProcessStage:
         make_context: Callable[[], Context] | None = None,
     ) -> None:
         self._supervisor, self._plan = supervisor, plan
-        self._node = NodeThread(make_context or _own_context, supervisor.say)
+        self._node = NodeThread(make_context or own_context, supervisor.say)
 
     def plan(self, entries: list[Entry]) -> Sequence[Process]:
         """Return the processes in which entries run that are added while the system runs."""
@@ -127,7 +127,8 @@ class ProcessStage:
         self._node.__exit__(*details)
 
 
-def _own_context() -> Context:
+def own_context() -> Context:
+    """Return the initialised context of the launcher's own node, for the environment's domain."""
     from robolink.context import Context
 
     context = Context()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -59,6 +60,8 @@ from robolink.system.terminal import shown
 from robolink.workspace import Folder
 
 if TYPE_CHECKING:
+    import asyncio
+
     from robolink.launch.ros.launch.sources import LaunchDescription
 
 
@@ -107,6 +110,8 @@ class Visit:
     """The launch file itself as an entity: without it nothing is left."""
     visited: int = 0
     """Number of the actions that were visited at this moment."""
+    futures: list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]] = field(default_factory=list)
+    """What a LaunchService waits for: entities, each with the future of its end."""
     _containers: dict[str, ComposableNodeContainer] = field(default_factory=dict)
     _processes: dict[str, str] = field(default_factory=dict)
     _followed: set[int] = field(default_factory=set)
@@ -175,9 +180,7 @@ class Visit:
     def _visit(self, entity: LaunchDescriptionEntity) -> list[LaunchDescriptionEntity]:
         try:
             inside = entities_in(entity.visit(self.context))
-            executed, self.context.executed = self.context.executed, []
-            for action in executed:
-                self._take(action)
+            self.take()
         except LaunchFileNotFoundError as error:
             package = package_not_here(str(error.path))
             if not package or not isinstance(entity, IncludeLaunchDescription):
@@ -197,7 +200,15 @@ class Visit:
             return []
         self.check(entity, inside)
         self._note_file()
+        if self.context.asyncio_loop is not None and (future := entity.get_asyncio_future()) is not None:
+            self.futures.append((entity, future))
         return inside
+
+    def take(self) -> None:
+        """Take over what was executed since the last look."""
+        executed, self.context.executed = self.context.executed, []
+        for action in executed:
+            self._take(action)
 
     def _leave_out(self, entity: LaunchDescriptionEntity, error: AbsentError) -> list[LaunchDescriptionEntity]:
         """Leave out, with a line, what cannot be carried out without a Python module; it brings nothing along."""
@@ -267,8 +278,12 @@ class Visit:
             raise self._error(action, f"more than {MOST_PROCESSES:,} processes")
 
     def _follow(self, action: ExecuteLocal) -> None:
-        """Register what follows the end of a process, unless it is the end of the launch, which a rule decides."""
-        if action.on_exit is not None and not ends_launch(action.on_exit) and id(action) not in self._followed:
+        """Register what follows the end of a process, unless it is the end of the launch, which a rule decides.
+
+        A LaunchService has no such rules: there the end of the launch is an event like others.
+        """
+        is_rule = self.context.asyncio_loop is None and ends_launch(action.on_exit)
+        if action.on_exit is not None and not is_rule and id(action) not in self._followed:
             self._followed.add(id(action))
             self.context.register_event_handler(OnProcessExit(target_action=action, on_exit=action.on_exit))
 
@@ -327,6 +342,7 @@ def visited(
     home = home_of(path, workspace)
     with surroundings(home) as absences:
         context = LaunchContext(argv=[f"{name}:={value}" for name, value in given.items()])
+        context.environment = dict(os.environ)
         absences.say = context.said.append
         context.launch_configurations.update(given)
         visit = Visit(context, EntryMaker(home, context.said.append), path)

@@ -11,11 +11,12 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, Protocol
 
 from robolink.exceptions import RobolinkError
 from robolink.supervisor.policy import Rules, Step
@@ -27,6 +28,8 @@ from robolink.system.processes import Variables, environment_with, windows_line
 
 _LONGEST_LINE = 1 << 20
 """Longest line, in bytes; a longer one is printed in pieces."""
+_PIECE = 65_536
+"""Longest piece of a stream that is read at once, in bytes."""
 _LAST_WORDS = 1.0
 """Longest wait for output after a process has ended, in seconds: in the pipe or from its own children."""
 _LEFT_BEHIND = 1.0
@@ -52,6 +55,10 @@ class Process:
         cpu: Numbers of the cores (from 0) on which it may run; empty for all.
         holds_interrupts: True if a Ctrl-C waits until it calls `watch_lifeline`, so that no traceback shows from
             which import Python was torn.
+        base: Environment to which `env` is added; None is this process's at its start.
+        apart: True keeps its output and its errors apart, and hands on what it writes at once, in pieces that need not
+            end with a line. Its standard input, unless `input` has any, is a pipe that nobody writes to.
+        terminal: True lets its output and errors be terminals, where the system has such, so that it writes in colour.
     """
 
     name: str
@@ -63,6 +70,16 @@ class Process:
     rules: Rules = field(default_factory=Rules)
     cpu: Sequence[int] = ()
     holds_interrupts: bool = False
+    base: Mapping[str, str] | None = None
+    apart: bool = False
+    terminal: bool = False
+
+
+class OnLine(Protocol):
+    """Receiver of what a process writes."""
+
+    def __call__(self, name: str, line: bytes, fd: int | None = None) -> None:
+        """Handle a line of the process `name`, or a piece of its output (1) or its errors (2), if these are apart."""
 
 
 class Child:
@@ -87,17 +104,16 @@ class Child:
         self.group = self._popen.pid
         self._has_ended = False
 
-    def watch(self, on_line: Callable[[str, bytes], None], on_exit: Callable[[str, int], None]) -> None:
+    def watch(self, on_line: OnLine, on_exit: Callable[[str, int], None]) -> None:
         """Call `on_line` with each line, then `on_exit` with the return code, on background threads.
 
         At its exit nothing is left of its process group either, nor is it ever signalled again: the id may be
         another's by then.
         """
-        output = self._popen.stdout
-        assert output is not None
-        reader = threading.Thread(target=self._read, args=(output, on_line), daemon=True)
-        reader.start()
-        threading.Thread(target=self._wait, args=(reader, on_exit), daemon=True).start()
+        readers = [threading.Thread(target=each, daemon=True) for each in self._reading(on_line)]
+        for each in readers:
+            each.start()
+        threading.Thread(target=self._wait, args=(readers, on_exit), daemon=True).start()
 
     def ask(self, step: Step) -> None:
         """Send the signal of a step to the process group; a paused one is resumed, since it could not obey."""
@@ -137,38 +153,83 @@ class Child:
         """True if the process, or another of its group, still runs."""
         return not self._has_ended and is_alive(self.group)
 
-    def _read(self, output: IO[bytes], on_line: Callable[[str, bytes], None]) -> None:
+    def _reading(self, on_line: OnLine) -> Iterator[Callable[[], None]]:
+        """Yield what reads each stream to its end."""
+        output, errors = self._popen.stdout, getattr(self._popen, "stderr", None)
+        assert output is not None
+        if errors is None:
+            yield partial(self._read, output, on_line)
+            return
+        yield partial(self._read_pieces, output, 1, on_line)
+        yield partial(self._read_pieces, errors, 2, on_line)
+
+    def _read(self, output: IO[bytes], on_line: OnLine) -> None:
         with output:
             while line := output.readline(_LONGEST_LINE):
                 on_line(self.name, line)
 
-    def _wait(self, reader: threading.Thread, on_exit: Callable[[str, int], None]) -> None:
+    def _read_pieces(self, output: IO[bytes], fd: int, on_line: OnLine) -> None:
+        with output, suppress(OSError):  # the end of a terminal is an error
+            while piece := os.read(output.fileno(), _PIECE):
+                on_line(self.name, piece, fd)
+
+    def _wait(self, readers: Sequence[threading.Thread], on_exit: Callable[[str, int], None]) -> None:
         returncode = self._popen.wait()
         self._has_ended = True
         _end_rest(self.group)
         if self._terminal is not None:
             self._terminal.put_back()
-        reader.join(_LAST_WORDS)
+        if (stdin := getattr(self._popen, "stdin", None)) is not None:
+            with suppress(OSError):
+                stdin.close()
+        deadline = clocks.monotonic() + _LAST_WORDS
+        for each in readers:
+            each.join(max(0.0, deadline - clocks.monotonic()))
         on_exit(self.name, returncode)
 
 
 def _started(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline) -> subprocess.Popen[bytes]:
     variables, options = lifeline.options()
-    return subprocess.Popen(
-        windows_line(process.argv) if sys.platform == "win32" else list(process.argv),
-        env=environment_with({**process.env, **variables}, _plain_output()),
-        cwd=process.cwd,
-        stdin=stdin,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        **options,
-        **_own_group(),
-    )
+    with _streams(process) as (stdout, stderr, masters):
+        popen = subprocess.Popen(
+            windows_line(process.argv) if sys.platform == "win32" else list(process.argv),
+            env=environment_with({**process.env, **variables}, _plain_output(process.base)),
+            cwd=process.cwd,
+            stdin=stdin,
+            stdout=stdout,
+            stderr=stderr,
+            **options,
+            **_own_group(),
+        )
+    if masters:
+        popen.stdout, *others = (open(each, "rb", 0) for each in masters)  # noqa: PTH123, SIM115 - the readers close it
+        popen.stderr = others[0] if others else None
+    return popen
+
+
+@contextmanager
+def _streams(process: Process) -> Iterator[tuple[int, int, list[int]]]:
+    """Yield the standard output and errors of a process, and for terminals the ends at which they are read."""
+    if not process.terminal or sys.platform == "win32":
+        yield subprocess.PIPE, subprocess.PIPE if process.apart else subprocess.STDOUT, []
+        return
+    pairs = [os.openpty() for _ in range(1 + process.apart)]
+    try:
+        yield pairs[0][1], pairs[-1][1], [master for master, _ in pairs]
+    except BaseException:
+        for master, _ in pairs:
+            os.close(master)
+        raise
+    finally:
+        for _, slave in pairs:
+            os.close(slave)
 
 
 def _forked(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline, server: ForkServer) -> Forked | None:
     """Return the process as the server has forked it; None if it cannot, or may not."""
     if process.cwd is not None or process.interactive or not process.holds_interrupts:
+        return None
+    if process.apart or process.terminal or process.base is not None:
         return None
     if not server.can_become(process.argv, process.env):
         return None
@@ -202,7 +263,8 @@ def _end_rest(group: int) -> None:
 def _standard_input(process: Process) -> Iterator[IO[bytes] | int | None]:
     """Yield a process's standard input: an unnamed file, since writing to a pipe might block."""
     if not process.input:
-        yield None if process.interactive else subprocess.DEVNULL
+        nothing = subprocess.PIPE if process.apart else subprocess.DEVNULL
+        yield None if process.interactive else nothing
         return
     with tempfile.TemporaryFile() as file:
         file.write(process.input)
@@ -223,13 +285,13 @@ def _interrupts_held(is_on: bool) -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _plain_output() -> dict[str, str]:
-    """Return this process's environment, with Python's output unbuffered and in UTF-8.
+def _plain_output(base: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return this process's environment, or another `base`, with Python's output unbuffered and in UTF-8.
 
     On Windows it would write to a pipe in the country's own letters. Elsewhere a terminal may want other than UTF-8.
     """
     encoding = {"PYTHONIOENCODING": "utf-8"} if sys.platform == "win32" else {}
-    return {**encoding, **os.environ, "PYTHONUNBUFFERED": "1"}
+    return {**encoding, **(os.environ if base is None else base), "PYTHONUNBUFFERED": "1"}
 
 
 def _own_group() -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robolink.documents.yamlfile import parse
 from robolink.exceptions import DocumentError
@@ -16,6 +16,7 @@ from robolink.launch.ros.launch.bases import (
     LaunchError,
     SomeSubstitutionsType,
 )
+from robolink.launch.ros.launch.event_handlers import OnShutdown
 from robolink.launch.ros.launch.events import Shutdown as ShutdownEvent
 from robolink.launch.ros.launch.processes import ExecuteLocal, ExecuteProcess
 from robolink.launch.ros.launch.settings import (
@@ -40,6 +41,9 @@ from robolink.launch.ros.launch.utilities import (
     performed,
 )
 from robolink.system.terminal import shown
+
+if TYPE_CHECKING:
+    import asyncio
 
 __all__ = [
     "AppendEnvironmentVariable",
@@ -139,9 +143,13 @@ class OpaqueCoroutine(Action):
         super().__init__(**left_over_kwargs)
         self.coroutine, self.args, self.kwargs = coroutine, list(args or ()), dict(kwargs or {})
         self.ignore_context = ignore_context
+        self._future: asyncio.Future[None] | None = None
 
     def execute(self, context: LaunchContext) -> None:
-        """Run it with `context`; the launch waits for it, since robolink's launcher has no loop of asyncio."""
+        """Run it with `context`: as a task of the LaunchService, which cancels it when the launch ends.
+
+        `robolink launch` has no loop of asyncio: it waits for the end of the coroutine.
+        """
         import asyncio
 
         first = [] if self.ignore_context else [context]
@@ -149,7 +157,19 @@ class OpaqueCoroutine(Action):
         async def run() -> None:
             await self.coroutine(*first, *self.args, **self.kwargs)
 
-        asyncio.run(run())
+        if context.asyncio_loop is None:
+            asyncio.run(run())
+            return
+        self._future = future = context.asyncio_loop.create_task(run())
+
+        def cancel(event: Event, context: LaunchContext) -> None:
+            future.cancel()
+
+        context.register_event_handler(OnShutdown(on_shutdown=cancel))
+
+    def get_asyncio_future(self) -> asyncio.Future[None] | None:
+        """Return its task; None outside of a LaunchService."""
+        return self._future
 
 
 class GroupAction(Action):
@@ -290,7 +310,7 @@ class TimerAction(Action):
     Args:
         period: Time until then, in seconds.
         actions: The actions.
-        cancel_on_shutdown: Of no effect here: nothing is started once the launch ends.
+        cancel_on_shutdown: False lets a LaunchService wait for it when it ends. `robolink launch` starts nothing then.
         **kwargs: `condition`.
     """
 
@@ -306,7 +326,24 @@ class TimerAction(Action):
     ) -> None:
         super().__init__(**kwargs)
         self.period, self.actions = period, list(actions)
+        self.cancel_on_shutdown = cancel_on_shutdown
         self.is_canceled = False
+        self._completed: asyncio.Future[None] | None = None
+
+    def execute(self, context: LaunchContext) -> None:
+        """Leave it to the launcher, which sees all actions that are executed in `context`."""
+        if context.asyncio_loop is not None:
+            self._completed = context.asyncio_loop.create_future()
+        context.note_executed(self)
+
+    def get_asyncio_future(self) -> asyncio.Future[None] | None:
+        """Return the future of its end; None outside of a LaunchService."""
+        return self._completed
+
+    def complete(self) -> None:
+        """Note that its time has come, or that it was canceled."""
+        if self._completed is not None and not self._completed.done():
+            self._completed.set_result(None)
 
     def seconds(self, context: LaunchContext) -> float:
         """Return the period with the values of `context`; raises LaunchError for one that is not a time."""
@@ -322,6 +359,7 @@ class TimerAction(Action):
     def cancel(self) -> None:
         """Let it do nothing when its time comes."""
         self.is_canceled = True
+        self.complete()
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return nothing: its actions come later."""

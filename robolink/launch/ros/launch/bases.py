@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, MutableMapping, Sequence
 from pathlib import Path
 from types import FrameType
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robolink.exceptions import RobolinkError, nearest
+
+if TYPE_CHECKING:
+    import asyncio
 
 _COMPANIONS = str(Path(__file__).parents[1]) + os.sep
 """Folder of the companions, whose frames are not the user's."""
@@ -87,8 +91,8 @@ class LaunchDescriptionEntity:
         """Carry out this entity in `context`; return the entities that come next, None for none."""
         return None
 
-    def get_asyncio_future(self) -> Any:
-        """Return None: robolink's launcher has no event loop of asyncio."""
+    def get_asyncio_future(self) -> asyncio.Future[Any] | None:
+        """Return the future of its end, for which a LaunchService waits; None if it has none."""
         return None
 
 
@@ -120,7 +124,7 @@ class Action(LaunchDescriptionEntity):
     """
 
     lasts = False
-    """True if it is done only later, as a process is when it has ended."""
+    """True if it is done only later, as a process is when it has ended; it then notes itself when it is executed."""
 
     def __init__(self, *, condition: Condition | None = None, **unknown: Any) -> None:
         for name in unknown:
@@ -150,12 +154,20 @@ class Action(LaunchDescriptionEntity):
         """Execute the action in `context` unless its condition is against it."""
         if self.condition is not None and not self.condition.evaluate(context):
             return None
-        context.executed.append(self)
+        if not self.lasts:
+            context.note_executed(self)
         try:
             return self.execute(context)
         finally:
             if not self.lasts:
-                context.completed(self)
+                self._note_completion(context)
+
+    def _note_completion(self, context: LaunchContext) -> None:
+        future = None if context.asyncio_loop is None else self.get_asyncio_future()
+        if future is None:
+            context.completed(self)
+        else:
+            future.add_done_callback(lambda _: context.completed(self))
 
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Do it in `context`; return the entities that come next, None for none."""
@@ -283,10 +295,35 @@ class _Locals:
         raise AttributeError("context.locals are read-only")
 
 
+class EventQueue(deque[Event]):
+    """Events that were emitted and not handled yet, with the methods of `asyncio.Queue` that wait for nothing."""
+
+    def qsize(self) -> int:
+        """Return the number of events."""
+        return len(self)
+
+    def empty(self) -> bool:
+        """Return whether there is none."""
+        return not self
+
+    def put_nowait(self, event: Event) -> None:
+        """Add `event`."""
+        self.append(event)
+
+    def get_nowait(self) -> Event:
+        """Remove and return the first one; raises asyncio.QueueEmpty if there is none."""
+        if not self:
+            import asyncio
+
+            raise asyncio.QueueEmpty
+        return self.popleft()
+
+
 class LaunchContext:
     """Values of a running launch: its configurations, its environment, and its event handlers.
 
-    The environment is a copy: what a launch file sets arrives at its processes, and changes nothing here.
+    The environment is that of this process, as in ROS 2. For `robolink launch` it is a copy: what a launch file sets
+    arrives at its processes, and changes nothing here.
 
     Args:
         argv: Arguments of the launch, `NAME:=VALUE`.
@@ -296,9 +333,12 @@ class LaunchContext:
     def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
         self.argv, self.noninteractive = list(argv or ()), noninteractive
         self.launch_configurations: dict[str, Any] = {}
-        self.environment: dict[str, str] = dict(os.environ)
+        self.environment: MutableMapping[str, str] = os.environ
         self.is_shutdown = False
-        self.asyncio_loop = None
+        self.asyncio_loop: asyncio.AbstractEventLoop | None = None
+        """Loop of the LaunchService that runs the launch; None where there is none."""
+        self.on_change: Callable[[], object] | None = None
+        """Called when an event was emitted, or when an action is done; from any thread."""
         self.executed: list[Action] = []
         """Actions executed since the launcher last looked."""
         self.handlers: list[BaseEventHandler] = []
@@ -309,13 +349,27 @@ class LaunchContext:
         """Lines for people since the launcher last looked."""
         self.requested: set[str] = set()
         """Names of the launch configurations that were declared or read."""
-        self.emitted: list[Event] = []
+        self.emitted = EventQueue()
         """Events that were emitted and not handled yet."""
+        self.awaited: list[asyncio.Future[Any]] = []
+        """Futures without which a LaunchService is not idle."""
         self.pushed: dict[str, list[dict[str, Any]]] = {each: [] for each in SCOPED}
         """Stacks of the scopes around."""
         self._first_environment = dict(self.environment)
         self._globals: dict[str, Any] = {}
         self._locals: dict[str, Any] = {}
+        self._pushed_locals: list[dict[str, Any]] = []
+
+    @property
+    def _event_queue(self) -> EventQueue:
+        return self.emitted
+
+    @property
+    def _event_handlers(self) -> list[BaseEventHandler]:
+        return self.handlers
+
+    def _set_asyncio_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
+        self.asyncio_loop = loop
 
     @property
     def locals(self) -> Any:
@@ -333,6 +387,26 @@ class LaunchContext:
     def extend_globals(self, extensions: Mapping[str, Any]) -> None:
         """Add locals, the mapping `extensions`, that give way to others of the same name."""
         self._globals.update(extensions)
+
+    def _push_locals(self) -> None:
+        self._pushed_locals.append(dict(self._locals))
+
+    def _pop_locals(self) -> None:
+        if not self._pushed_locals:
+            raise LaunchError("more scopes of locals end than have begun")
+        self._locals = self._pushed_locals.pop()
+
+    def _push_launch_configurations(self) -> None:
+        self.push("launch_configurations")
+
+    def _pop_launch_configurations(self) -> None:
+        self.pop("launch_configurations")
+
+    def _push_environment(self) -> None:
+        self.push("environment")
+
+    def _pop_environment(self) -> None:
+        self.pop("environment")
 
     def push(self, which: str) -> None:
         """Begin a scope of `which`: launch_configurations or environment."""
@@ -375,10 +449,20 @@ class LaunchContext:
             "environment": dict(self.environment),
         }
 
+    def note_executed(self, action: Action) -> None:
+        """Note, for the launcher, that `action` was executed."""
+        if not any(each is action for each in self.executed):
+            self.executed.append(action)
+
     def completed(self, action: Action) -> None:
         """Note that `action` is done, if a handler may want to know."""
         if self.handlers:
             self.finished.append(action)
+        self._changed()
+
+    def _changed(self) -> None:
+        if self.on_change is not None:
+            self.on_change()
 
     def would_handle_event(self, event: Event) -> bool:
         """Return whether a handler means `event`."""
@@ -387,13 +471,16 @@ class LaunchContext:
     def emit_event_sync(self, event: Event) -> None:
         """Emit `event`: it is handled once the launcher is done with the present one."""
         self.emitted.append(event)
+        self._changed()
 
     async def emit_event(self, event: Event) -> None:
         """Emit `event`."""
         self.emit_event_sync(event)
 
-    def add_completion_future(self, completion_future: Awaitable[Any]) -> None:
-        """Ignore `completion_future`: robolink's launcher has no event loop of asyncio."""
+    def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
+        """Let a LaunchService go on until `completion_future` is done; `robolink launch` does not wait for it."""
+        self.awaited.append(completion_future)
+        self._changed()
 
     def perform_substitution(self, substitution: Substitution) -> str:
         """Return the text of `substitution`."""

@@ -54,6 +54,9 @@ class Node(ExecuteProcess):
         self.expanded_name: str | None = None
         super().__init__(cmd=[self.node_executable, *self.arguments], name=exec_name, **kwargs)
 
+    def prepare(self, context: LaunchContext) -> None:
+        """Leave it to the launcher: it finds the program, then performs the rest with the values of `context`."""
+
     @property
     def node_name(self) -> str:
         """Full name of the node, once it was executed; raises LaunchError before."""
