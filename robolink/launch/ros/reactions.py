@@ -100,7 +100,7 @@ class Reactions(Generic[T]):
         if action is None:
             return []
         self._alive.add(name)
-        details = _details(action, name, pid)
+        details = self._details(action, name, pid)
         action.process_details = {"action": action, **details}
         return self._following(now, lambda: self._emit(process_events.ProcessStarted(action=action, **details)))
 
@@ -111,7 +111,7 @@ class Reactions(Generic[T]):
             return []
         self._alive.discard(name)
         action.return_code = returncode
-        details = _details(action, name, (action.process_details or {}).get("pid", 0))
+        details = self._details(action, name, (action.process_details or {}).get("pid", 0))
 
         def emit() -> None:
             self._emit(process_events.ProcessExited(action=action, returncode=returncode, **details))
@@ -129,7 +129,7 @@ class Reactions(Generic[T]):
         action = self._actions.get(name)
         if action is None:
             return []
-        details = _details(action, name, (action.process_details or {}).get("pid", 0))
+        details = self._details(action, name, (action.process_details or {}).get("pid", 0))
 
         def emit() -> None:
             for each in (1, 2) if fd is None else (fd,):
@@ -163,6 +163,12 @@ class Reactions(Generic[T]):
     def emit(self, event: Event, now: float) -> list[Request[T]]:
         """Handle an event that somebody else than the launch file emits."""
         return self._following(now, lambda: self._emit(event))
+
+    def _details(self, action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
+        """Return what the events about a process say of it; `robolink launch` calls it as it does on the terminal."""
+        known = {"name": name, "cmd": [], "cwd": None, "env": None, **(action.process_details or {}), "pid": pid}
+        known.pop("action", None)
+        return known if self._outlives else {**known, "name": name}
 
     # What follows from an event
 
@@ -224,7 +230,7 @@ class Reactions(Generic[T]):
 
     def _go_on_without(self, action: ExecuteLocal) -> None:
         """Let what waits for a process that is left out go on, as if it had started and ended well."""
-        details = _details(action, "", 0)
+        details = self._details(action, "", 0)
         self._emit(process_events.ProcessStarted(action=action, **details))
         event = process_events.ProcessExited(action=action, returncode=0, **details)
         for handler in list(self._visit.context.handlers):
@@ -323,13 +329,6 @@ class Reactions(Generic[T]):
             self._visit.run_within(entities, handler.around)
         finally:
             context._pop_locals()
-
-
-def _details(action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
-    """Return what the events about a process say of it."""
-    known = {"name": name, "cmd": [], "cwd": None, "env": None, **(action.process_details or {}), "pid": pid}
-    known.pop("action", None)
-    return known
 
 
 def _starts_only(found: Sequence[LaunchDescriptionEntity]) -> bool:

@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -32,8 +32,7 @@ from robolink.launch.ros.reactions import Reactions
 from robolink.launch.ros.signals import AsyncSafeSignalManager
 from robolink.launch.ros.visit import Visit
 from robolink.supervisor import Process, Supervisor
-from robolink.supervisor.director import Add, End, Request, Signal, Stop, Tell
-from robolink.supervisor.policy import described
+from robolink.supervisor.director import End, Request, Signal, Stop, Tell
 from robolink.workspace import user_workspace
 
 if TYPE_CHECKING:
@@ -281,8 +280,8 @@ class Runner:
 
     def wrote(self, name: str, piece: bytes, fd: int) -> None:
         """Handle a piece of what a process writes."""
-        self._outputs[name].write(piece, fd)
         self.take(self._reactions.line(name, piece, self.now, fd))
+        self._outputs[name].write(piece, fd)
 
     def exited(self, name: str, returncode: int, *, is_over: bool) -> None:
         """Handle that a process has ended; `is_over` unless it is started again."""
@@ -305,9 +304,7 @@ class Runner:
             self._log(name).info(f"process has finished cleanly [pid {details.get('pid')}]")
             return
         words = " ".join(each for each in details.get("cmd", []) if each.strip())
-        self._log(name).error(
-            f"process has died [pid {details.get('pid')}, exit code {returncode}, cmd '{words}'], it {described(returncode)}."
-        )
+        self._log(name).error(f"process has died [pid {details.get('pid')}, exit code {returncode}, cmd '{words}'].")
 
 
 _INFO, _DEBUG = 20, 10
@@ -381,7 +378,7 @@ class _Supervision:
         self._runner, self._loop = runner, loop
         self._ended: asyncio.Future[None] = loop.create_future()
         self.deadline: float | None = _FOR_EVER
-        self._output: TextIO = Path(os.devnull).open("w", encoding="utf-8")
+        self._output: TextIO = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115 - its end closes it
         self._supervisor = Supervisor([], output=self._output, director=lambda _: self)
         self._thread = threading.Thread(target=self._run, name="launch-supervisor", daemon=True)
         self._thread.start()
@@ -413,7 +410,7 @@ class _Supervision:
             self._loop.call_soon_threadsafe(lambda: self._runner.take([Tell(text)]))
         finally:
             self._output.close()
-            self._loop.call_soon_threadsafe(lambda: self._ended.done() or self._ended.set_result(None))
+            self._loop.call_soon_threadsafe(self._ended.set_result, None)
 
     # What it hears as a director, on the supervisor's thread
 

@@ -15,7 +15,6 @@ from robolink.launch.ros.launch.bases import (
     EventHandler,
     LaunchContext,
     LaunchDescriptionEntity,
-    LaunchError,
     SomeActionsType,
     SomeEntitiesType,
     SomeSubstitutionsType,

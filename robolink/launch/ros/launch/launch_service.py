@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Coroutine, Iterable
+from collections.abc import Awaitable, Generator, Iterable
 from typing import TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import Event, LaunchContext, LaunchError
@@ -98,7 +98,7 @@ class LaunchService:
         finally:
             self._runner = None
 
-    def shutdown(self, force_sync: bool = False) -> Coroutine[Any, Any, None] | None:
+    def shutdown(self, force_sync: bool = False) -> Awaitable[None] | None:
         """End the launch in order; of no effect while it does not run. From any thread.
 
         Args:
@@ -117,8 +117,8 @@ class LaunchService:
 class _Done:
     """Awaitable that is done; unlike a coroutine it may be thrown away."""
 
-    def __await__(self) -> Any:
-        return iter(())
+    def __await__(self) -> Generator[Any, None, None]:
+        yield from ()
 
 
 def _is_running_here(loop: asyncio.AbstractEventLoop) -> bool:

@@ -13,7 +13,7 @@ _made: dict[str, type[logging.Handler]] = {}
 
 
 def with_per_logger_formatting(cls: type[logging.Handler]) -> type[logging.Handler]:
-    """Return a class below the handler `cls` whose `setFormatterFor(logger, formatter)` sets the format of one logger."""
+    """Return a class below the handler `cls` that has `setFormatterFor(logger, formatter)`."""
 
     class _PerLogger(cls):  # type: ignore[misc,valid-type]
         def __init__(self, *args: Any, **kwargs: Any) -> None:

@@ -68,7 +68,7 @@ def _make_unique_log_dir(*, base_path: str) -> str:
 def _renew_latest_log_dir(*, log_dir: str) -> bool:
     """Let the link `latest` beside a folder lead to it; return False where something else has this name."""
     link = Path(log_dir).parent / "latest"
-    if link.exists(follow_symlinks=False) if sys.version_info >= (3, 12) else os.path.lexists(link):
+    if os.path.lexists(link):
         if not link.is_symlink():
             return False
         link.unlink()
@@ -88,7 +88,7 @@ class _Screen:
 
 
 class LaunchConfig:
-    """Settings of launch's logging: its folder, its formats, and its handlers, one for the screen and one for each file."""
+    """Settings of launch's logging: its folder, formats and handlers, one for the screen and one for each file."""
 
     def __init__(self) -> None:
         self._log_dir: str | None = None
@@ -163,7 +163,8 @@ class LaunchConfig:
         """Set the format of the log files.
 
         Args:
-            log_format: As `logging.Formatter` takes it, or `default`. The variable OVERRIDE_LAUNCH_LOG_FORMAT counts more.
+            log_format: As `logging.Formatter` takes it, or `default`. The variable OVERRIDE_LAUNCH_LOG_FORMAT
+                counts more.
             log_style: Style of the format, `{` if it is None; raises LogConfigError beside a name.
         """
         self.file_formatter = _formatter(log_format, log_style, _FILE, "OVERRIDE_LAUNCH_LOG_FORMAT")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from robolink.launch.ros.launch.actions import ExecuteProcess
-from robolink.launch.ros.launch.bases import LaunchArgumentError, LaunchError, SomeSubstitutionsType
+from robolink.launch.ros.launch.bases import LaunchArgumentError, LaunchContext, LaunchError, SomeSubstitutionsType
 from robolink.launch.ros.launch_ros.descriptions import take_old_names
 
 
