@@ -260,6 +260,11 @@ class Executor:
         return bool(self._spinners.threads)
 
     @property
+    def is_spinning(self) -> bool:
+        """Whether any thread spins: rclpy's name of `spinning`."""
+        return self.spinning
+
+    @property
     def spins_here(self) -> bool:
         """True if the calling thread spins or runs a callback."""
         if threading.get_ident() in self._spinners.threads:

@@ -9,6 +9,8 @@ from robolink.constants import S_TO_NS
 from robolink.duration import Duration
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from robolink.interfaces.builtin_interfaces.msg import Time as TimeMsg
 
 __all__ = ["ClockType", "Duration", "Time"]
@@ -111,6 +113,18 @@ class Time:
 
         seconds, nanoseconds = self.seconds_nanoseconds()
         return TimeMsg(sec=seconds, nanosec=nanoseconds)
+
+    def to_datetime(self) -> datetime:
+        """Return the time as a date and a time of day, by the local clock and to a microsecond, without a time zone.
+
+        Raises:
+            TypeError: if it is of a steady clock, whose times are no dates.
+        """
+        from datetime import datetime
+
+        if self._clock_type not in (ClockType.ROS_TIME, ClockType.SYSTEM_TIME):
+            raise TypeError("a time of a steady clock is no date: expected one of ROS_TIME or SYSTEM_TIME")
+        return datetime.fromtimestamp(self._nanoseconds / S_TO_NS)
 
     @classmethod
     def from_msg(cls, msg: TimeMsg, clock_type: ClockType = ClockType.ROS_TIME) -> Time:

@@ -120,6 +120,7 @@ class ActionClient(Waitable):
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
         feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - rclpy's
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        enable_feedback_msg_optimization: bool = False,
     ) -> None:
         """Create a client of an action.
 
@@ -134,6 +135,8 @@ class ActionClient(Waitable):
             cancel_service_qos_profile: QoS of the client that cancels goals.
             feedback_sub_qos_profile: QoS of the subscription to feedback; depth 10 by default.
             status_sub_qos_profile: QoS of the subscription to the goals' states.
+            enable_feedback_msg_optimization: Lyrical's, which lets the network leave out feedback of other clients'
+                goals. It has no effect: that is left out here, after it has come.
 
         Raises:
             ValueError: if the name is not valid, or the class is not an action.

@@ -33,6 +33,19 @@ def test_a_goal_is_executed_with_feedback_on_the_way(
     assert handle.status == SUCCEEDED
 
 
+def test_feedback_of_other_clients_goals_is_left_out(
+    executor: SingleThreadedExecutor, node: Node, client: ActionClient, serve: Callable[..., ActionServer]
+) -> None:
+    serve()
+    other = ActionClient(node, Fibonacci, "fibonacci", enable_feedback_msg_optimization=True)
+    heard: list[int] = []
+    theirs = accepted(executor, client, 4)
+    handle = accepted(executor, other, 2, feedback_callback=lambda each: heard.append(len(each.feedback.sequence)))
+    done(executor, handle.get_result_async())
+    done(executor, theirs.get_result_async())
+    assert heard == [3]
+
+
 def test_a_result_may_be_asked_for_before_and_after_the_end(
     executor: SingleThreadedExecutor, client: ActionClient, serve: Callable[..., ActionServer], waiting: Waiting
 ) -> None:

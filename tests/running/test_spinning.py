@@ -204,6 +204,15 @@ def test_an_executor_of_ones_own_is_used(default: Context, executor: SingleThrea
     assert executor.get_nodes() == [other]
 
 
+def test_an_executor_says_whether_it_spins(virtual: Context, executor: SingleThreadedExecutor) -> None:
+    node, seen = Node("node", context=virtual), list[bool]()
+    executor.add_node(node)
+    node.create_timer(0.1, lambda: seen.append(executor.is_spinning))
+    assert not executor.is_spinning
+    executor.spin_once()
+    assert (seen, executor.is_spinning) == ([True], False)
+
+
 def test_the_executor_of_all_lasts_as_long_as_the_context(default: Context) -> None:
     first = rclpy.get_global_executor()
     assert rclpy.get_global_executor() is first

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
+from datetime import datetime
 from typing import Any
 
 import pytest
@@ -158,3 +159,16 @@ def test_they_show_what_they_are() -> None:
 def test_they_are_not_hashable_as_in_rclpy(value: Any) -> None:
     with pytest.raises(TypeError, match="unhashable"):
         hash(value)
+
+
+@pytest.mark.parametrize("clock_type", [ClockType.ROS_TIME, ClockType.SYSTEM_TIME])
+def test_a_time_is_a_local_date(clock_type: ClockType) -> None:
+    moment = datetime(2026, 5, 22, 14, 30, 5, 250_000)
+    time = Time(seconds=int(moment.timestamp()), nanoseconds=250_000_999, clock_type=clock_type)
+    assert time.to_datetime() == moment.replace(microsecond=250_001)
+    assert time.to_datetime().tzinfo is None
+
+
+def test_a_time_of_a_steady_clock_is_no_date() -> None:
+    with pytest.raises(TypeError, match="steady clock"):
+        Time(seconds=1, clock_type=ClockType.STEADY_TIME).to_datetime()
