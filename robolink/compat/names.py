@@ -33,7 +33,6 @@ launch.events launch.events execution_complete include_launch_description matche
 launch.events.process launch.events process_exited process_io process_matchers process_started process_stderr
 launch.events.process launch.events process_stdin process_stdout process_targeted_event running_process_event
 launch.events.process launch.events shutdown_process signal_process
-launch.frontend launch.frontend parse_substitution
 launch.launch_description_sources launch.sources any_launch_description_source frontend_launch_description_source
 launch.launch_description_sources launch.sources python_launch_description_source python_launch_file_utilities
 launch.substitutions launch.substitutions anon_name boolean_substitution command environment_variable
@@ -43,6 +42,7 @@ launch.substitutions launch.substitutions not_equals_substitution path_join_subs
 launch.substitutions launch.substitutions string_join_substitution substitution_failure this_launch_file
 launch.substitutions launch.substitutions this_launch_file_dir
 launch.substitutions launch.utilities text_substitution
+launch.utilities launch.typed_values type_utils
 launch_ros launch_ros.descriptions parameter_descriptions
 launch_ros launch_ros.events event_handlers
 launch_ros.actions launch_ros.actions composable_node_container lifecycle_node lifecycle_transition
