@@ -166,7 +166,7 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
         vars(module).setdefault("__path__", [])  # else Python asks no finder for geometry_msgs.msg._twist
     for name in inner:
         if isinstance(vars(module).get(name.rpartition(".")[2]), FunctionType):
-            # ROS 2's launch.frontend.parse_substitution is a module and, after the import of its package, the function.
+            # ROS 2's launch_testing.parametrize is a module and, after the import of its package, the function.
             # An import of the module that finds it here does not set the package's attribute once more.
             sys.modules.setdefault(name, importlib.import_module(ROOMS[name]))
     if holds_types:

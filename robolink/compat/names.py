@@ -15,7 +15,7 @@ launch launch launch_introspector
 launch launch.logging logging
 launch.logging launch.log_handlers handlers
 launch launch.processes descriptions descriptions.executable
-launch.actions launch.actions emit_event for_loop group_action log_info
+launch.actions launch.actions emit_event for_loop group_action
 launch.actions launch.processes execute_local execute_process
 launch.actions launch.actions opaque_coroutine opaque_function register_event_handler shutdown_action timer_action
 launch.actions launch.actions unregister_event_handler
@@ -23,6 +23,7 @@ launch.actions launch.settings append_environment_variable declare_launch_argume
 launch.actions launch.settings pop_launch_configurations push_environment push_launch_configurations
 launch.actions launch.settings reset_environment reset_launch_configurations set_environment_variable
 launch.actions launch.settings set_launch_configuration unset_environment_variable unset_launch_configuration
+launch.actions launch.lines log log_info
 launch.actions launch.sources include_launch_description
 launch.conditions launch.conditions evaluate_condition_expression_impl if_condition invalid_condition_expression_error
 launch.conditions launch.conditions launch_configuration_equals launch_configuration_not_equals unless_condition
@@ -54,10 +55,8 @@ launch_ros.events launch_ros.events lifecycle matchers
 launch_ros.events.lifecycle launch_ros.events change_state lifecycle_node_matchers state_transition
 launch_ros.events.matchers launch_ros.events matches_node_name
 launch_ros.substitutions launch_ros.substitutions executable_in_package find_package parameter
-launch_xml launch_frontend launch_description_sources
-launch_xml launch_frontend.elements entity
-launch_yaml launch_frontend launch_description_sources
-launch_yaml launch_frontend.elements entity
+launch_xml.launch_description_sources launch_xml.launch_description_sources xml_launch_description_source
+launch_yaml.launch_description_sources launch_yaml.launch_description_sources yaml_launch_description_source
 launch_testing launch_testing.arguments parse_arguments print_arguments
 launch_testing launch_testing.markers decorator parametrize ready_to_test_action_timeout
 launch_testing.actions launch_testing.actions gtest pytest ready test
@@ -73,8 +72,8 @@ has a file for nearly each class."""
 _LAUNCH_TOPS = {
     "launch": "launch",
     "launch_ros": "launch_ros",
-    "launch_xml": "launch_frontend",
-    "launch_yaml": "launch_frontend",
+    "launch_xml": "launch_xml",
+    "launch_yaml": "launch_yaml",
     "launch_testing": "launch_testing",
     "launch_testing_ros": "launch_testing_ros",
 }

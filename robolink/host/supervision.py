@@ -280,7 +280,7 @@ class Supervision:
         if isinstance(request, Signal):
             return [] if request.name not in self.host.programs else self._signalled(request)
         if isinstance(request, Tell):
-            return [Say(request.text)]
+            return [Say(request.text, request.severity)]
         if request.code:
             self.failures.append(request.reason)
             self._on_failure(request.reason)

@@ -98,7 +98,7 @@ def launch(
         nodes, domain = [each.full_name for each in entries if each.source is not None], _domain()
         warn = functools.partial(supervisor.say, severity="WARN")
         for line in notes:
-            supervisor.say(line)
+            supervisor.say(line, getattr(line, "severity", "INFO"))
         for line in (*beside.unprotected(entries, os.environ), *doubled(nodes, domain)):
             warn(line)
         if server is not None:

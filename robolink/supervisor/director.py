@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeAlias, TypeVar
 
+from robolink.supervisor.policy import Severity
+
 T = TypeVar("T")
 
 
@@ -41,9 +43,10 @@ class Signal:
 
 @dataclass(frozen=True)
 class Tell:
-    """Request: print a line to the user."""
+    """Request: print a line of a severity to the user."""
 
     text: str
+    severity: Severity = "INFO"
 
 
 @dataclass(frozen=True)

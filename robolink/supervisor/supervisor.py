@@ -245,7 +245,7 @@ class Supervisor:
                 if each.name in self._children:
                     self._children[each.name].signal(each.number)
             elif isinstance(each, Tell):
-                actions.append(Say(each.text))
+                actions.append(Say(each.text, each.severity))
             else:
                 actions += self._policy.end(each.reason, each.code, now)
         return actions

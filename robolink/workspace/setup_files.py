@@ -150,7 +150,6 @@ _NAME = re.compile(r"<name>\s*([A-Za-z0-9][\w-]*)\s*</name>")
 _ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*)\s*)?(?:\[[^\]]*\]\s*)?")
 _TOML_TABLE = re.compile(r"^\[(.+?)\][ \t]*(?:#.*)?$", re.MULTILINE)
 _TOML_ENTRY = re.compile(r"""^[ \t]*["']?([\w.-]+)["']?\s*=\s*["']([^"'\n]*)["']""", re.MULTILINE)
-_TOML_SCRIPTS = ("project.scripts", 'project.entry-points."console_scripts"', "project.entry-points.console_scripts")
 
 
 def package_name(folder: Path) -> str:
@@ -159,19 +158,33 @@ def package_name(folder: Path) -> str:
     return found[1] if found else ""
 
 
+SCRIPTS = "console_scripts"
+"""Group of the entry points that are programs."""
+
+
 def console_scripts(folder: Path) -> dict[str, tuple[str, str]]:
     """Return the programs that a Python package names: name to module and function (``main`` if it names none)."""
+    return entry_points(folder, SCRIPTS)
+
+
+def entry_points(folder: Path, group: str) -> dict[str, tuple[str, str]]:
+    """Return the entry points of a Python package: name to module and function (``main`` if it names none).
+
+    Args:
+        folder: Folder of the package.
+        group: Group of the entry points.
+    """
     lines = [
-        *itertools.islice(_setup_py(_read(folder / "setup.py")), MOST_SCRIPTS),
-        *_setup_cfg(_read(folder / "setup.cfg")),
-        *_pyproject(_read(folder / "pyproject.toml")),
+        *itertools.islice(_setup_py(_read(folder / "setup.py"), group), MOST_SCRIPTS),
+        *_ini(_read(folder / "setup.cfg"), "options.entry_points", group),
+        *_pyproject(_read(folder / "pyproject.toml"), group),
     ]
     return _scripts(lines)
 
 
 def entry_points_file(file: Path) -> dict[str, tuple[str, str]]:
     """Return the programs in the entry_points.txt `file` of an installed package: name to module and function."""
-    return _scripts(list(_ini(_read(file), "console_scripts")))
+    return _scripts(list(_ini(_read(file), SCRIPTS)))
 
 
 def _scripts(lines: list[str]) -> dict[str, tuple[str, str]]:
@@ -204,24 +217,20 @@ def _read(file: Path) -> str:
         return ""
 
 
-def _setup_py(text: str) -> Iterator[str]:
-    """Yield the console scripts that a setup.py gives to `setup()`, as far as they are plain text in it."""
+def _setup_py(text: str, group: str) -> Iterator[str]:
+    """Yield the entry points that a setup.py gives to `setup()`, as far as they are plain text in it."""
     tree = parsed(text)
     if tree is not None and (given := keywords(tree, "setup").get("entry_points")) is not None:
-        yield from _scripts_in(Values(tree, Path()).of(given))
+        yield from _points_in(Values(tree, Path()).of(given), group)
 
 
-def _scripts_in(entry_points: Any) -> Iterator[str]:
-    if isinstance(entry_points, str):  # setuptools takes the text of an .ini file too
-        yield from _ini(entry_points, "console_scripts")
-    elif isinstance(entry_points, dict):
-        scripts = entry_points.get("console_scripts", ())
-        lines = scripts.splitlines() if isinstance(scripts, str) else scripts
+def _points_in(given: Any, group: str) -> Iterator[str]:
+    if isinstance(given, str):  # setuptools takes the text of an .ini file too
+        yield from _ini(given, group)
+    elif isinstance(given, dict):
+        points = given.get(group, ())
+        lines = points.splitlines() if isinstance(points, str) else points
         yield from (each for each in lines if isinstance(each, str)) if isinstance(lines, Iterable) else ()
-
-
-def _setup_cfg(text: str) -> Iterator[str]:
-    yield from _ini(text, "options.entry_points", "console_scripts")
 
 
 def _ini(text: str, section: str, option: str = "") -> Iterator[str]:
@@ -242,9 +251,11 @@ def _ini(text: str, section: str, option: str = "") -> Iterator[str]:
         yield from (f"{name} = {value}" for name, value in parser.items(section))
 
 
-def _pyproject(text: str) -> Iterator[str]:
-    """Yield the scripts of a pyproject.toml; Python 3.10 has no reader for TOML, and these tables are plain lines."""
+def _pyproject(text: str, group: str) -> Iterator[str]:
+    """Yield a pyproject.toml's entry points; Python 3.10 has no reader for TOML, and these tables are plain lines."""
     parts = _TOML_TABLE.split(text)
+    tables = [f'project.entry-points."{group}"', f"project.entry-points.{group}"]
+    tables += ["project.scripts"] if group == SCRIPTS else []
     for table, content in zip(parts[1::2], parts[2::2], strict=True):
-        if table.strip().replace(" ", "") in _TOML_SCRIPTS:
+        if table.strip().replace(" ", "") in tables:
             yield from (f"{name} = {value}" for name, value in _TOML_ENTRY.findall(content))

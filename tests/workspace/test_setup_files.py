@@ -18,7 +18,7 @@ from robolink.workspace import (
     find_node,
 )
 from robolink.workspace.packages import import_roots
-from robolink.workspace.setup_files import _pyproject, _setup_cfg, _setup_py, console_scripts
+from robolink.workspace.setup_files import SCRIPTS, _ini, _pyproject, _setup_py, console_scripts
 from tests.support.ros_tree import write_package
 
 
@@ -92,8 +92,8 @@ PIECES = st.lists(
 @given(PIECES)
 def test_any_text_gives_scripts_or_none(pieces: list[str]) -> None:
     text = " ".join(pieces)
-    for reader in (_setup_py, _setup_cfg, _pyproject):
-        assert all(isinstance(each, str) for each in reader(text))
+    for found in (_setup_py(text, SCRIPTS), _ini(text, "options.entry_points", SCRIPTS), _pyproject(text, SCRIPTS)):
+        assert all(isinstance(each, str) for each in found)
 
 
 def test_a_deep_or_endless_setup_py_is_none(tmp_path: Path) -> None:

@@ -205,7 +205,7 @@ class Reactions(Generic[T]):
         with visit.placing(None):
             visit.take()
         said, visit.context.said[:] = list(visit.context.said), []
-        self._requests += map(Tell, said)
+        self._requests += [Tell(each, getattr(each, "severity", "INFO")) for each in said]
         for timer, around in visit.timers:
             with visit.placing(timer):
                 due = now + timer.seconds(visit.context)

@@ -19,7 +19,7 @@ from robolink.launch.ros.launch.actions import (
     EmitEvent,
     ExecuteLocal,
     IncludeLaunchDescription,
-    LogInfo,
+    Log,
     OpaqueCoroutine,
     OpaqueFunction,
     SetLaunchConfiguration,
@@ -70,7 +70,7 @@ MOST_VISITED = 100_000
 
 
 T = TypeVar("T")
-_ACTING = (EmitEvent, LogInfo, OpaqueCoroutine, OpaqueFunction)
+_ACTING = (EmitEvent, Log, OpaqueCoroutine, OpaqueFunction)
 """Actions that are for the moment itself: these are not foreseen."""
 
 

@@ -8,12 +8,12 @@ import pytest
 
 from robolink.cli.running_nodes import runner
 from robolink.exceptions import DocumentError
-from robolink.launch.ros.launch_frontend.elements import read_xml
+from robolink.launch.ros.launch_xml.parser import Parser
 
 
 def test_the_place_of_an_error_in_xml_is_the_line_that_asked_for_it(tmp_path: Path) -> None:
     path = tmp_path / "a.launch.xml"
     path.write_text("<!DOCTYPE r [<!ENTITY a 'b'>]><launch/>")  # refused by a handler, which a parser in C calls
     with pytest.raises(DocumentError) as caught:
-        read_xml(path)
+        Parser.load(path)
     assert runner._place(caught.value).rpartition(":")[0] == str(Path(__file__))

@@ -14,8 +14,7 @@ from robolink.exceptions import DocumentError
 from robolink.interfaces.std_msgs.msg import String
 from robolink.launch.entry import System as LaunchSystem
 from robolink.launch.lookup import is_of_ros
-from robolink.launch.ros.launch.frontend import parse_substitution
-from robolink.launch.ros.launch_frontend.elements import words_of
+from robolink.launch.ros.launch.frontend.parse_substitution import parse_substitution, words_of
 from robolink.launch.system import arguments_of, read_system
 from robolink.testing import System
 from tests.support.launched_systems import said
@@ -198,7 +197,7 @@ WRONG_YAML = [
     ("launch:\n- node: {pkg: bot}\n", 2, "node: 'exec' is missing"),
     ("launch:\n- node: talker\n", 2, "node: a mapping of its attributes is expected"),
     ("launch:\n- node\n", 2, "each action is a mapping with one key, such as `- node: {...}`"),
-    ("launch:\n- log: {message: {a: b}}\n", 2, "a value is a text, a number or a list, got a mapping"),
+    ("launch:\n- log: {message: {a: b}}\n", 2, "log: 'message' is one value, not a mapping"),
     ("launch: []\nother: []\n", 1, "a launch file of ROS 2 has one key, `launch`, with a list of actions"),
     ("launch: []\nnodes: []\n", 1, "it is one of robolink's own launch files, and those of ROS 2 include none of"),
 ]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from robolink.exceptions import DocumentError
 from robolink.launch.ros.launch import LaunchContext, LaunchIntrospector
 from robolink.launch.ros.launch.bases import LaunchError
-from robolink.launch.ros.launch.frontend import parse_substitution
+from robolink.launch.ros.launch.frontend.parse_substitution import parse_substitution
 from robolink.launch.ros.launch.sources import PythonLaunchDescriptionSource
 from robolink.launch.ros.launch.utilities import perform_substitutions
 from robolink.launch.ros.surroundings import surroundings

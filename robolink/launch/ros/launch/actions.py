@@ -18,6 +18,7 @@ from robolink.launch.ros.launch.bases import (
 )
 from robolink.launch.ros.launch.event_handlers import OnShutdown
 from robolink.launch.ros.launch.events import Shutdown as ShutdownEvent
+from robolink.launch.ros.launch.lines import Log, LogDebug, LogError, LogInfo, LogWarning
 from robolink.launch.ros.launch.processes import ExecuteLocal, ExecuteProcess
 from robolink.launch.ros.launch.settings import (
     AppendEnvironmentVariable,
@@ -37,7 +38,6 @@ from robolink.launch.ros.launch.sources import IncludeLaunchDescription
 from robolink.launch.ros.launch.utilities import (
     LaunchArgumentError,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
     performed,
 )
 from robolink.system.terminal import shown
@@ -55,7 +55,11 @@ __all__ = [
     "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
+    "Log",
+    "LogDebug",
+    "LogError",
     "LogInfo",
+    "LogWarning",
     "OpaqueCoroutine",
     "OpaqueFunction",
     "PopEnvironment",
@@ -73,23 +77,6 @@ __all__ = [
     "UnsetEnvironmentVariable",
     "UnsetLaunchConfiguration",
 ]
-
-
-class LogInfo(Action):
-    """Write a line.
-
-    Args:
-        msg: The text.
-        **kwargs: `condition`.
-    """
-
-    def __init__(self, *, msg: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__(**kwargs)
-        self.msg = normalize_to_list_of_substitutions(msg)
-
-    def execute(self, context: LaunchContext) -> None:
-        """Write it as a line of the launcher's own, with the values of `context`."""
-        context.said.append(perform_substitutions(context, self.msg))
 
 
 class OpaqueFunction(Action):

@@ -133,6 +133,21 @@ class Action(LaunchDescriptionEntity):
         self.place = calling_place()
         """Place of the user's own file that made it."""
 
+    @classmethod
+    def parse(cls, entity: Any, parser: Any, ignore: Sequence[str] = ()) -> tuple[Any, dict[str, Any]]:
+        """Return this class, and the arguments for an object of it that an element of XML or YAML has.
+
+        A class of one's own that is exposed (`launch.frontend.expose_action`) adds its own ones to those of its base.
+
+        Args:
+            entity: The element (`launch.frontend.Entity`).
+            parser: Parser of its texts, and of the elements in it.
+            ignore: Attributes that are not read here.
+        """
+        from robolink.launch.ros.launch_frontend.build import arguments
+
+        return cls, arguments(cls, entity, parser, ignore)
+
     @property
     def condition(self) -> Condition | None:
         """The condition, None if there is none."""
@@ -317,6 +332,22 @@ class EventQueue(deque[Event]):
 
             raise asyncio.QueueEmpty
         return self.popleft()
+
+
+class Said(str):
+    """Line for people.
+
+    Args:
+        text: The line.
+        severity: Its severity, in the supervisor's words.
+    """
+
+    severity: str
+
+    def __new__(cls, text: str, severity: str) -> Said:  # noqa: D102 - the class says it
+        made = super().__new__(cls, text)
+        made.severity = severity
+        return made
 
 
 class LaunchContext:

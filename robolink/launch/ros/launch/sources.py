@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
@@ -181,13 +181,28 @@ def _described(top: LaunchDescription) -> Iterator[LaunchDescriptionEntity]:
 MAKER = "generate_launch_description"
 """Name of the function in a Python launch file."""
 
-_FRONTEND = "robolink.launch.ros.launch_frontend.build"
-"""Module of the parser of XML and YAML, by its name: it makes the actions, which need this file."""
-_FRONTEND_SUFFIXES = (".xml", ".launch", ".yaml", ".yml")
+_FRONTENDS = {
+    **dict.fromkeys((".xml", ".launch"), "robolink.launch.ros.launch_xml.parser"),
+    **dict.fromkeys((".yaml", ".yml"), "robolink.launch.ros.launch_yaml.parser"),
+}
+"""Modules of the parsers, by the ends of file names: they are imported late, since they need this file."""
 
 
 class InvalidLaunchFileError(LaunchError):
-    """A file is not a launch file, or one of a kind that cannot be read."""
+    """A file is not a launch file, or one of a kind that cannot be read.
+
+    Args:
+        extension: End of the file's name.
+        likely_errors: Errors of those that have tried to read it.
+        reason: Sentence about it; '' makes one of the errors.
+    """
+
+    def __init__(self, extension: str = "", *, likely_errors: Iterable[BaseException] = (), reason: str = "") -> None:
+        errors = list(likely_errors)
+        found = "; ".join(f"{type(each).__name__}: {each}" for each in errors)
+        kind = f" of the kind '{shown(extension)}'" if extension else ""
+        super().__init__(reason or f"not a launch file{kind}{': ' if found else ''}{found}")
+        self.extension, self.likely_errors = extension, errors
 
 
 class InvalidPythonLaunchFileError(InvalidLaunchFileError):
@@ -296,10 +311,20 @@ def read_launch_file(path: Path) -> LaunchDescription:
         return read_python_file(path)
     if not path.is_file():
         raise LaunchFileNotFoundError(path)
-    if path.suffix not in _FRONTEND_SUFFIXES:
-        raise InvalidLaunchFileError(f"{path} is not a launch file: expected .py, {', '.join(_FRONTEND_SUFFIXES)}")
-    parse: Callable[[Path], LaunchDescription] = importlib.import_module(_FRONTEND).parse
-    return parse(path)
+    entity, parser = _parser_of(path).load(path)
+    description: LaunchDescription = parser.parse_description(entity)
+    return description
+
+
+def _parser_of(path: Path) -> Any:
+    """Return the parser of files with such a name; other packages may have some, which takes a while to find out."""
+    if path.suffix in _FRONTENDS:
+        return importlib.import_module(_FRONTENDS[path.suffix]).Parser
+    from robolink.launch.ros.launch.frontend.parser import Parser
+
+    for each in Parser.get_parsers_from_filename(path.name):
+        return each
+    raise InvalidLaunchFileError(reason=f"{path} is not a launch file: expected .py, {', '.join(_FRONTENDS)}")
 
 
 def read_python_file(path: Path) -> LaunchDescription:
@@ -309,11 +334,12 @@ def read_python_file(path: Path) -> LaunchDescription:
     module = _loaded(path)
     maker = getattr(module, MAKER, None)
     if maker is None:
-        raise InvalidPythonLaunchFileError(f"{path}: it has no function {MAKER}(){_instead_of_maker(module)}")
+        raise InvalidPythonLaunchFileError(reason=f"{path}: it has no function {MAKER}(){_instead_of_maker(module)}")
     made = maker()
     if not isinstance(made, LaunchDescription):
         kind = type(made).__name__
-        raise InvalidPythonLaunchFileError(f"{path}: {MAKER}() returned {kind}, and a LaunchDescription was expected")
+        reason = f"{path}: {MAKER}() returned {kind}, and a LaunchDescription was expected"
+        raise InvalidPythonLaunchFileError(reason=reason)
     return made
 
 

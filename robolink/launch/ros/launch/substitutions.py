@@ -42,6 +42,8 @@ __all__ = [
     "EqualsSubstitution",
     "FileContent",
     "FindExecutable",
+    "ForEachVar",
+    "ForLoopIndex",
     "IfElseSubstitution",
     "LaunchConfiguration",
     "LaunchLogDir",
@@ -142,6 +144,45 @@ class LocalSubstitution(Substitution):
             except (LookupError, AttributeError):
                 raise SubstitutionFailure(f"the context has no '{self.expression}' here ({name})") from None
         return str(value)
+
+
+FOR_EACH = "ForEachVar__"
+"""Beginning of the names of those locals that an iteration of ForEach has."""
+
+
+class ForEachVar(Substitution):
+    """Value that an iteration of a ForEach of XML or YAML has.
+
+    Args:
+        name: Name of the value.
+        default_value: Value of an iteration that has none of this name; without one that is an error.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+        self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value; raises SubstitutionFailure if there is none."""
+        name, known = perform_substitutions(context, self.name), context.get_locals_as_dict()
+        if FOR_EACH + name in known:
+            return str(known[FOR_EACH + name])
+        if self.default_value is None:
+            own = [each.removeprefix(FOR_EACH) for each in known if each.startswith(FOR_EACH)]
+            hint = nearest(name, own) or (f": there is {', '.join(own[:8])}" if own else "")
+            raise SubstitutionFailure(f"no loop here has the value '{shown(name)}'{hint}")
+        return perform_substitutions(context, self.default_value)
+
+
+class ForLoopIndex(ForEachVar):
+    """Number that an iteration of a ForLoop of XML or YAML has.
+
+    Args:
+        name: Name of the loop.
+    """
+
+    def __init__(self, name: SomeSubstitutionsType) -> None:
+        super().__init__(name)
 
 
 class PathJoinSubstitution(Substitution):

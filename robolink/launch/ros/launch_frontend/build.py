@@ -1,478 +1,393 @@
-"""Parser of XML and YAML launch files: a table with a function for each kind of element, which makes its action."""
+"""Table of the actions that XML and YAML launch files have: a function for each class, which reads its arguments."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from pathlib import Path
-from typing import Any, TypeAlias
+import functools
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import Any, List, TypeAlias, TypeVar  # noqa: UP035 - ROS 2 names its list types by it
 
-import yaml
-
-from robolink.exceptions import nearest
 from robolink.launch.ros.launch import actions
-from robolink.launch.ros.launch.actions import Shutdown
-from robolink.launch.ros.launch.bases import Action, LaunchDescriptionEntity, LaunchError, Substitution
-from robolink.launch.ros.launch.sources import LaunchDescription
-from robolink.launch.ros.launch.utilities import TextSubstitution, as_node_reads, checked, coerced, item_type, truth_of
-from robolink.launch.ros.launch_frontend.elements import Entity, read_xml, read_yaml
+from robolink.launch.ros.launch.bases import Action, Condition, LaunchError, Substitution
+from robolink.launch.ros.launch.conditions import IfCondition, UnlessCondition
+from robolink.launch.ros.launch.frontend.entity import Entity, placing
+from robolink.launch.ros.launch.frontend.expose import Method
+from robolink.launch.ros.launch.frontend.parse_substitution import words_of
+from robolink.launch.ros.launch.frontend.parser import Parser
+from robolink.launch.ros.launch.frontend.type_utils import get_data_type_from_identifier
+from robolink.launch.ros.launch.utilities import as_node_reads, coerced
 from robolink.launch.ros.launch_ros import actions as ros
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode, ParameterFile, ParameterValue
-from robolink.system.terminal import shown
 
-TYPES: dict[str, Any] = {
-    "str": str,
-    "int": int,
-    "float": float,
-    "bool": bool,
-    "list_of_str": list[str],
-    "list_of_int": list[int],
-    "list_of_float": list[float],
-    "list_of_bool": list[bool],
-    "yaml": None,
-}
-"""Types that an attribute `type` may name."""
-OTHER_TYPES = {"double": "float", "string": "str", "integer": "int", "boolean": "bool"}
+T = TypeVar("T")
+Arguments: TypeAlias = "dict[str, Any]"
 
 
-def parameters_in(entity: Entity) -> list[Any]:
-    """Return the parameters of an action for the `param` elements of a node, `entity`."""
-    return [_parameter(each) for each in entity.inside("param")]
+@dataclass
+class Reading:
+    """Reader of an element's attributes.
+
+    Args:
+        entity: The element.
+        parser: Parser of its texts, and of the elements in it.
+        ignored: Attributes that are left to a subclass of the action.
+    """
+
+    entity: Entity
+    parser: Parser
+    ignored: Collection[str] = ()
+
+    def value(self, name: str, data_type: Any = str) -> Any:
+        """Return the value of an attribute, `name`, of a type, or its text; None if it is not there."""
+        if name in self.ignored:
+            return None
+        return self.entity.get_attr(name, data_type=data_type, optional=True)
+
+    def parsed(self, name: str, data_type: Any = str) -> Any:
+        """Return the value of an attribute, `name`, of a type, or the substitutions in its text; None if it lacks."""
+        value = self.value(name, data_type)
+        return self.parser.parse_substitution(value) if isinstance(value, str) else value
+
+    def needed(self, name: str) -> list[Substitution] | None:
+        """Return the substitutions in an attribute, `name`. Raises an AttributeError if it is not there."""
+        return None if name in self.ignored else self.parser.parse_substitution(self.entity.get_attr(name))
+
+    def plain(self, name: str) -> str | None:
+        """Return the text of an attribute, `name`, without its backslashes; None if it is not there."""
+        value = self.value(name)
+        return None if value is None else self.parser.escape_characters(value)
+
+    def flag(self, name: str) -> bool | None:
+        """Return the boolean of an attribute, `name`, which has no substitutions; None if it is not there."""
+        value = self.value(name, bool)
+        try:
+            return None if value is None else bool(coerced(value, bool) if isinstance(value, str) else value)
+        except LaunchError as error:
+            raise LaunchError(f"'{name}': {error}") from None
+
+    def words(self, name: str) -> list[list[Substitution]] | None:
+        """Return the words of a command line in an attribute, `name`; None if it is not there."""
+        text = self.value(name)
+        try:
+            return None if text is None else words_of(self.parser.parse_substitution(text))
+        except LaunchError as error:
+            raise LaunchError(f"'{name}': {error}") from None
+
+    def inside(self, tag: str, read: Callable[[Reading], T]) -> list[T]:
+        """Return what `read` makes of each of the elements called `tag`."""
+        found = self.entity.get_attr(tag, data_type=List[Entity], optional=True)  # noqa: UP006
+        return [self._read(each, read) for each in found or ()]
+
+    def _read(self, entity: Entity, read: Callable[[Reading], T]) -> T:
+        with placing(entity):
+            found = read(Reading(entity, self.parser))
+            entity.assert_entity_completely_parsed()
+        return found
+
+    def pairs(self, tag: str, name: str = "name", value: str = "value") -> list[tuple[Any, Any]]:
+        """Return the elements called `tag`, such as `<env name= value=>`, as pairs of substitutions.
+
+        Args:
+            tag: Name of the elements.
+            name: Attribute with the first of a pair.
+            value: Attribute with the second.
+        """
+        return self.inside(tag, lambda each: (each.needed(name), each.needed(value)))
+
+    def mapping(self, tag: str) -> Arguments | None:
+        """Return the elements called `tag` as a mapping of substitutions; None if there is none."""
+        found: dict[Any, Any] = {tuple(name): value for name, value in self.pairs(tag)}
+        return found or None
+
+    def actions(self, *left_out: str) -> list[Action]:
+        """Return the actions in it, but for elements with the names `left_out`."""
+        return [self.parser.parse_action(each) for each in self.entity.children if each.type_name not in left_out]
 
 
-def value_of(entity: Entity) -> ParameterValue:
-    """Return the `value` of an element, `entity`, as that of a parameter. Raises DocumentError."""
-    if "value" not in entity.attributes:
-        raise entity.error("'value' is missing")
-    kind = _kind(entity)
-    try:
-        value = _typed(entity, kind) if entity.is_typed else _coerced(entity, kind)
-    except LaunchError as error:
-        raise entity.error(str(error)) from None
-    found = [_plain(entity, each, kind) for each in value] if isinstance(value, list) else _plain(entity, value, kind)
+def arguments(cls: type, entity: Entity, parser: Parser, ignored: Collection[str]) -> Arguments:
+    """Return the arguments for an object of an action's class.
+
+    Args:
+        cls: The class, which has a row in `ROWS` or a base that has one.
+        entity: The element that stands for the action.
+        parser: Parser of its texts, and of the elements in it.
+        ignored: Attributes that are left to a subclass of the action.
+    """
+    reading = Reading(entity, parser, ignored)
+    row = next((ROWS[each] for each in cls.__mro__ if each in ROWS), None)
+    with placing(entity):
+        found = {"condition": _condition(reading), **({} if row is None else row(reading))}
+    return {name: each for name, each in found.items() if each is not None}
+
+
+def _condition(reading: Reading) -> Condition | None:
+    """Return the condition of an action, `if` or `unless`; None if it has none."""
+    if_text, unless_text = reading.parsed("if"), reading.parsed("unless")
+    if if_text is not None and unless_text is not None:
+        raise LaunchError("it has 'if' and 'unless': one of them is enough")
+    if if_text is not None:
+        return IfCondition(if_text)
+    return None if unless_text is None else UnlessCondition(unless_text)
+
+
+def _parameter(reading: Reading) -> Any:
+    file = reading.parsed("from")
+    if file is not None:
+        return ParameterFile(file, allow_substs=reading.parsed("allow_substs", bool) or False)
+    nested = reading.inside("param", _parameter)
+    name = tuple(reading.needed("name") or ())
+    if not nested:
+        return {name: _parameter_value(reading)}
+    if not all(isinstance(each, dict) for each in nested):
+        raise LaunchError("a file stands in no other parameter")
+    return {name: {key: value for each in nested for key, value in each.items()}}
+
+
+def _parameter_value(reading: Reading) -> ParameterValue:
+    """Return the `value` of an element as that of a parameter; a text of no type is what the node reads."""
+    identifier = reading.value("type")
+    kind = None if identifier is None else get_data_type_from_identifier(identifier)
+    value = reading.entity.get_attr("value", data_type=kind)
+    if isinstance(value, str) and "$(" not in value and kind in (int, float, bool):
+        value = coerced(value, kind)
+    found = reading.parser.parse_if_substitutions(value)
+    if kind is None:
+        found = [as_node_reads(each) for each in found] if isinstance(value, list) else as_node_reads(found)
     return ParameterValue(found, value_type=kind)
 
 
-def _kind(entity: Entity) -> Any:
-    """Return the type that `type` names; None leaves it to YAML."""
-    name = entity.texts("type")
-    if name is not None and name not in TYPES:
-        hint = nearest(name, TYPES) or f": {OTHER_TYPES[name]}" if name in OTHER_TYPES else f": {', '.join(TYPES)}"
-        raise entity.error(f"no type is called '{shown(name)}'{hint}")
-    return TYPES[name or "yaml"]
-
-
-def _typed(entity: Entity, kind: Any) -> Any:
-    """Return a value of YAML, which has its type; texts may hold substitutions. Raises LaunchError for another type."""
-    value = entity.attributes["value"]
-    texts = [each for each in value if not isinstance(each, str)] if isinstance(value, list) else value
-    if isinstance(value, str) or texts == []:
-        return value
-    checked(texts, value)
-    inner = item_type(kind)
-    expected = kind if inner is None else list
-    if kind is not None and not isinstance(value, expected):
-        raise LaunchError(f"'value' is of type {entity.texts('type')}, got {value!r:.40}")
-    if inner is not None and not all(isinstance(each, inner) for each in texts):
-        raise LaunchError(f"'value' is a {entity.texts('type')}, got {value!r:.40}")
-    return value
-
-
-def _coerced(entity: Entity, kind: Any) -> Any:
-    """Return a value of XML as its type has it; texts stay what they are if they do not spell one."""
-    text = str(entity.attributes["value"])
-    separator = entity.texts("value-sep")
-    if separator:
-        inner = item_type(kind)
-        if kind is not None and inner is None:
-            raise LaunchError(f"'value' is of type {entity.texts('type')}, and 'value-sep' makes a list")
-        return [_read(each, inner) for each in text.split(separator)]
-    if "$(" in text and item_type(kind) is None and kind is not None:
-        return text
-    return _read(text, kind)
-
-
-def _read(text: str, kind: Any) -> Any:
-    """Return `text` as YAML reads it; a list may hold texts with substitutions. Raises LaunchError."""
-    if kind is not None and item_type(kind) is None:
-        return coerced(text, kind)
-    try:
-        value = yaml.safe_load(text) if text else text
-    except (yaml.YAMLError, ValueError, RecursionError):
-        return text
-    inner = item_type(kind)
-    if inner is not None and not isinstance(value, list):
-        raise LaunchError(f"expected a list of {inner.__name__}, got '{shown(text)}'")
-    if not isinstance(value, list):
-        return checked(value, text)
-    plain = [each for each in value if not isinstance(each, str)]
-    checked(plain if plain else value, text)
-    if inner is not None and not all(isinstance(each, (str, inner)) for each in value):
-        raise LaunchError(
-            f"expected a list of {inner.__name__}, got '{shown(text)}'"
-            + (": write 1.0 for 1" if inner is float else "")
-        )
-    return value
-
-
-def _parameter(entity: Entity) -> Any:
-    if "from" in entity.attributes:
-        entity.check(("from", "allow_substs"))
-        return ParameterFile(entity.needed("from"), allow_substs=entity.optional("allow_substs", bool) or False)
-    name = tuple(entity.needed("name"))
-    if entity.children:
-        entity.check(("name",), ("param",))
-        return {name: _merged(entity)}
-    entity.check(("name", "value", "type") if entity.is_typed else ("name", "value", "value-sep", "type"))
-    return {name: value_of(entity)}
-
-
-def _merged(entity: Entity) -> dict[Any, Any]:
-    merged: dict[Any, Any] = {}
-    for each in entity.inside("param"):
-        inner = _parameter(each)
-        if not isinstance(inner, dict):
-            raise each.error("a file stands in no other parameter")
-        merged.update(inner)
-    return merged
-
-
-def _parsed(entity: Entity, value: Any) -> Any:
-    """Return a text with its substitutions, a text without any as it is, and any other value."""
-    if not isinstance(value, str) or not value:
-        return value
-    parts = entity.parsed(value)
-    return parts[0].text if len(parts) == 1 and isinstance(parts[0], TextSubstitution) else parts
-
-
-def _plain(entity: Entity, value: Any, kind: Any) -> Any:
-    """Return a value with its substitutions; a text of no type is what the node reads."""
-    found = _parsed(entity, value)
-    return as_node_reads(found) if kind is None else found
-
-
-PROCESS = (
-    "cwd",
-    "name",
-    "launch-prefix",
-    "output",
-    "respawn",
-    "respawn_delay",
-    "respawn_max_retries",
-    "on_exit",
-    "sigterm_timeout",
-    "sigkill_timeout",
-    "emulate_tty",
-)
-"""Attributes of each process."""
-
-
-def executable(entity: Entity, name: str = "name") -> dict[str, Any]:
-    """Return the arguments of ExecuteProcess that the attributes of an element stand for. Raises DocumentError.
+def _process(reading: Reading, name: str = "name") -> Arguments:
+    """Return the arguments of each process.
 
     Args:
-        entity: The element.
+        reading: Reader of the element.
         name: Attribute with the name for people.
     """
-    prefix = entity.optional("launch-prefix")
-    found: dict[str, Any] = {
-        "name": entity.optional(name),
-        "cwd": entity.optional("cwd"),
-        "prefix": prefix,
-        "additional_env": pairs(entity, "env", "name", "value") or None,
-        "respawn": entity.optional("respawn", bool) or False,
-        "respawn_delay": entity.optional("respawn_delay", float),
-        "respawn_max_retries": _retries(entity),
-        "on_exit": _on_exit(entity),
-    }
-    return {key: value for key, value in found.items() if value is not None}
-
-
-def pairs(entity: Entity, tag: str, name: str, value: str) -> dict[Any, Any]:
-    """Return the children with a tag, such as `<env name= value=>`, as a mapping of substitutions.
-
-    Args:
-        entity: The element.
-        tag: Tag of the children.
-        name: Attribute of the key.
-        value: Attribute of the value.
-    """
-    found = {}
-    for each in entity.inside(tag):
-        each.check((name, value))
-        found[tuple(each.needed(name))] = each.needed(value)
-    return found
-
-
-def _retries(entity: Entity) -> int:
-    text = entity.texts("respawn_max_retries", int)
-    try:
-        return -1 if text is None else int(text)
-    except ValueError:
-        raise entity.error(f"'respawn_max_retries' is a number, got '{text:.40}'") from None
-
-
-def _on_exit(entity: Entity) -> Shutdown | None:
-    """Return the end of the launch, for a process whose end is that of the launch."""
-    said = entity.texts("on_exit")
-    if said not in (None, "shutdown"):
-        raise entity.error(f"'on_exit' is shutdown, got '{said:.40}'")
-    return Shutdown(reason="it was required") if said else None
-
-
-NODE = ("pkg", "exec", "name", "namespace", "exec_name", "args", "ros_args", *PROCESS)
-"""Attributes of a node."""
-INSIDE = ("param", "remap", "env")
-"""Elements inside of a node."""
-
-
-def _settings(entity: Entity) -> dict[str, Any]:
-    """Return the arguments of Node that an element stands for, without its name and namespace."""
-    shared = executable(entity, "exec_name")
-    shared["exec_name"] = shared.pop("name", None)
     return {
-        "package": entity.needed("pkg"),
-        "executable": entity.needed("exec"),
-        "parameters": parameters_in(entity),
-        "remappings": _remappings(entity),
-        "arguments": entity.words("args"),
-        "ros_arguments": entity.words("ros_args"),
-        **shared,
+        "name": reading.parsed(name),
+        "cwd": reading.parsed("cwd"),
+        "prefix": reading.parsed("launch-prefix"),
+        "output": reading.parsed("output"),
+        "additional_env": reading.mapping("env") if "additional_env" not in reading.ignored else None,
+        "respawn": reading.parsed("respawn", bool),
+        "respawn_delay": _number(reading, "respawn_delay"),
+        "respawn_max_retries": _retries(reading),
+        "on_exit": _on_exit(reading),
+        "sigterm_timeout": reading.parsed("sigterm_timeout", float),
+        "sigkill_timeout": reading.parsed("sigkill_timeout", float),
+        "emulate_tty": reading.flag("emulate_tty"),
     }
 
 
-def _remappings(entity: Entity) -> list[tuple[list[Substitution], list[Substitution]]]:
-    for each in entity.inside("remap"):
-        each.check(("from", "to"))
-    return [(each.needed("from"), each.needed("to")) for each in entity.inside("remap")]
+def _number(reading: Reading, name: str) -> Any:
+    """Return the number of seconds, or the substitutions, in an attribute, `name`."""
+    value = reading.parsed(name, float)
+    if isinstance(value, float) and value < 0.0:
+        raise LaunchError(f"'{name}' is a number of seconds from 0 on, got {value}")
+    return value
 
 
-def _named(entity: Entity) -> dict[str, Any]:
-    return {"name": entity.optional("name"), "namespace": entity.optional("namespace")}
+def _retries(reading: Reading) -> int | None:
+    value = reading.value("respawn_max_retries", int)
+    if isinstance(value, str):
+        raise LaunchError(f"'respawn_max_retries' is a number, got '{value:.40}'")
+    return value if value is None else int(value)
 
 
-def _node(entity: Entity) -> Action:
-    entity.check(NODE, INSIDE)
-    return ros.Node(**_named(entity), **_settings(entity))
+def _on_exit(reading: Reading) -> list[Action] | None:
+    """Return the end of the launch, for a process whose end is that of the launch."""
+    said = reading.value("on_exit")
+    if said not in (None, "shutdown"):
+        raise LaunchError(f"'on_exit' is shutdown, got '{said:.40}'")
+    return [actions.Shutdown(reason="it was required")] if said else None
 
 
-def _lifecycle_node(entity: Entity) -> Action:
-    entity.check((*NODE, "autostart"), INSIDE)
-    named = {name: value or "" for name, value in _named(entity).items()}
-    return ros.LifecycleNode(**named, autostart=entity.optional("autostart", bool) or False, **_settings(entity))
+def _executable(reading: Reading) -> Arguments:
+    words = [*(reading.words("cmd") or ()), *(reading.words("args") or ())]
+    if not words and "cmd" not in reading.ignored:
+        reading.entity.get_attr("cmd")
+        raise LaunchError("'cmd' is empty")
+    return {"cmd": words or None, "shell": reading.flag("shell"), **_process(reading)}
 
 
-def _container(entity: Entity) -> Action:
-    entity.check(NODE, (*INSIDE, "composable_node"))
-    named = {**_named(entity), "name": entity.needed("name")}
-    return ros.ComposableNodeContainer(**named, **_settings(entity), composable_node_descriptions=_composed(entity))
+def _node(reading: Reading) -> Arguments:
+    shared = _process(reading, "exec_name")
+    return {
+        **shared,
+        "exec_name": shared["name"],
+        "package": reading.needed("pkg"),
+        "executable": reading.needed("exec"),
+        "name": reading.parsed("name"),
+        "namespace": reading.parsed("namespace"),
+        "parameters": reading.inside("param", _parameter) if "param" not in reading.ignored else None,
+        "remappings": _remappings(reading),
+        "arguments": reading.words("args"),
+        "ros_arguments": reading.words("ros_args"),
+    }
 
 
-def _load(entity: Entity) -> Action:
-    entity.check(("target",), ("composable_node",))
-    return ros.LoadComposableNodes(
-        target_container=entity.needed("target"), composable_node_descriptions=_composed(entity)
-    )
+def _remappings(reading: Reading) -> list[tuple[Any, Any]]:
+    return reading.pairs("remap", "from", "to")
 
 
-def _composed(entity: Entity) -> list[ComposableNode]:
-    return [_composable(each) for each in entity.inside("composable_node")]
+def _lifecycle_node(reading: Reading) -> Arguments:
+    found = {**_node(reading), "autostart": reading.parsed("autostart", bool)}
+    return {**found, "name": found["name"] or "", "namespace": found["namespace"] or ""}
 
 
-def _composable(entity: Entity) -> ComposableNode:
-    condition = entity.condition()
-    entity.check(("pkg", "plugin", "name", "namespace"), ("param", "remap", "extra_arg"))
-    for each in entity.inside("extra_arg"):
-        each.check(("name", "value"))
+def _container(reading: Reading) -> Arguments:
+    reading.needed("name")
+    return {**_node(reading), "composable_node_descriptions": reading.inside("composable_node", _composable)}
+
+
+def _load(reading: Reading) -> Arguments:
+    return {
+        "target_container": reading.needed("target"),
+        "composable_node_descriptions": reading.inside("composable_node", _composable),
+    }
+
+
+def _composable(reading: Reading) -> ComposableNode:
     made = ComposableNode(
-        package=entity.needed("pkg"),
-        plugin=entity.needed("plugin"),
-        parameters=parameters_in(entity),
-        remappings=_remappings(entity),
-        extra_arguments=[{tuple(each.needed("name")): each.needed("value")} for each in entity.inside("extra_arg")],
-        condition=condition,
-        **_named(entity),
+        condition=_condition(reading),
+        package=reading.needed("pkg") or "",
+        plugin=reading.needed("plugin") or "",
+        name=reading.parsed("name"),
+        namespace=reading.parsed("namespace"),
+        parameters=reading.inside("param", _parameter),
+        remappings=_remappings(reading),
+        extra_arguments=[{tuple(name): value} for name, value in reading.pairs("extra_arg")],
     )
-    made.place = entity.place
+    made.place = reading.entity.place
     return made
 
 
-NODES: dict[str, Callable[[Entity], Action]] = {
-    "lifecycle_node": _lifecycle_node,
-    "load_composable_node": _load,
-    "load_composable_nodes": _load,
-    "node": _node,
-    "node_container": _container,
-}
-"""Builders by tag."""
-
-
-Build: TypeAlias = "Callable[[Entity], Action]"
-
-
-def parse(path: Path) -> LaunchDescription:
-    """Return the description in an XML or YAML file, `path`. Raises DocumentError with its line."""
-    top = read_yaml(path) if path.suffix in (".yaml", ".yml") else read_xml(path)
-    ignored = [each for each in top.attributes if each not in ("version", "deprecated")]
-    notes = [
-        f"{path.name}:{top.place.line}: launch has no attribute '{shown(each)}': it is ignored" for each in ignored
-    ]
-    said = [actions.LogInfo(msg=each) for each in notes]
-    return LaunchDescription([*said, *built(top.children)], deprecated_reason=top.texts("deprecated"))
-
-
-def built(entities: Iterable[Entity]) -> list[LaunchDescriptionEntity]:
-    """Return the actions that `entities` stand for. Raises DocumentError with the line of the first wrong one."""
-    return [_action(each) for each in entities]
-
-
-def _action(entity: Entity) -> Action:
-    builders = {**BUILDERS, **NODES}
-    if entity.name not in builders:
-        raise entity.error(f"there is no such element{nearest(entity.name, builders)}")
-    condition = entity.condition()
-    action = builders[entity.name](entity)
-    action.place = entity.place
-    if condition is not None:
-        action._condition = condition
-    return action
-
-
-def _arg(entity: Entity) -> Action:
-    entity.check(("name", "default", "description"), ("choice",))
-    for each in entity.inside("choice"):
-        each.check(("value",))
-    choices = [each.plain("value") for each in entity.inside("choice")]
-    return actions.DeclareLaunchArgument(
-        entity.plain("name"),
-        default_value=entity.optional("default"),
-        description=entity.plain("description") if "description" in entity.attributes else None,
-        choices=choices or None,
-    )
-
-
-def _let(entity: Entity) -> Action:
-    entity.check(("name", "value"))
-    return actions.SetLaunchConfiguration(entity.needed("name"), entity.needed("value"))
-
-
-def _include(entity: Entity) -> Action:
-    entity.check(("file",), ("arg", "let"))
-    for each in entity.children:
-        each.check(("name", "value"))
-    arguments = [(each.needed("name"), each.needed("value")) for each in entity.children]
-    return actions.IncludeLaunchDescription(entity.needed("file"), launch_arguments=arguments)
-
-
-def _group(entity: Entity) -> Action:
-    _only_attributes(entity, ("scoped", "forwarding"))
-    inside = [each for each in entity.children if each.name != "keep"]
-    retained = pairs(entity, "keep", "name", "value")
-    return actions.GroupAction(
-        built(inside),
-        scoped=_flag(entity, "scoped"),
-        forwarding=_flag(entity, "forwarding"),
-        launch_configurations=retained or None,
-    )
-
-
-def _reset(entity: Entity) -> Action:
-    entity.check((), ("keep",))
-    return actions.ResetLaunchConfigurations(pairs(entity, "keep", "name", "value"))
-
-
-def _timer(entity: Entity) -> Action:
-    _only_attributes(entity, ("period", "cancel_on_shutdown"))
-    return actions.TimerAction(period=entity.needed("period", float), actions=built(entity.children))
-
-
-def _log(entity: Entity) -> Action:
-    entity.check(("message", "level"))
-    return actions.LogInfo(msg=entity.needed("message"))
-
-
-def _shutdown(entity: Entity) -> Action:
-    entity.check(("reason",))
-    return actions.Shutdown(reason=entity.texts("reason") or "reason not given")
-
-
-def _append_env(entity: Entity) -> Action:
-    entity.check(("name", "value", "prepend", "separator"))
-    more: dict[str, Any] = {
-        each: entity.optional(each, *kinds)
-        for each, kinds in (("prepend", [bool]), ("separator", []))
-        if each in entity.attributes
+def _arg(reading: Reading) -> Arguments:
+    reading.entity.get_attr("name")
+    return {
+        "name": reading.plain("name"),
+        "default_value": reading.parsed("default"),
+        "description": reading.plain("description"),
+        "choices": reading.inside("choice", _choice) or None,
     }
-    return actions.AppendEnvironmentVariable(entity.needed("name"), entity.needed("value"), **more)
 
 
-def _with(make: Callable[..., Action], *names: str) -> Build:
-    """Return the builder of an action whose arguments are these attributes, in their order."""
-
-    def build(entity: Entity) -> Action:
-        entity.check(names)
-        return make(*(entity.needed(name) for name in names))
-
-    return build
+def _choice(reading: Reading) -> str:
+    return reading.parser.escape_characters(reading.entity.get_attr("value"))
 
 
-def _set_use_sim_time(entity: Entity) -> Action:
-    """Build it as in Python: there ROS 2 hands a list of substitutions to rclpy, which refuses it."""
-    entity.check(("value",))
-    text = entity.texts("value", bool)
-    return ros.SetUseSimTime(text == "true")
+def _include(reading: Reading) -> Arguments:
+    given = [*reading.pairs("arg"), *reading.pairs("let")]
+    return {"launch_description_source": reading.needed("file"), "launch_arguments": given}
 
 
-def _push_namespace(entity: Entity) -> Action:
-    entity.check(("namespace",))
-    return ros.PushROSNamespace(entity.needed("namespace"))
+def _group(reading: Reading) -> Arguments:
+    return {
+        "scoped": reading.flag("scoped"),
+        "forwarding": reading.flag("forwarding"),
+        "launch_configurations": reading.mapping("keep"),
+        "actions": reading.actions("keep"),
+    }
 
 
-def _executable(entity: Entity) -> Action:
-    entity.check(("cmd", "args", "shell", *PROCESS), ("env",))
-    cmd: list[list[Substitution]] = [*entity.words("cmd"), *entity.words("args")]
-    if not cmd:
-        raise entity.error("'cmd' is missing")
-    return actions.ExecuteProcess(cmd=cmd, shell=_flag(entity, "shell", False), **executable(entity))
+def _timer(reading: Reading) -> Arguments:
+    period = reading.parsed("period", float)
+    if period is None:
+        reading.entity.get_attr("period")
+    cancels = reading.parsed("cancel_on_shutdown", bool)
+    return {"period": period, "cancel_on_shutdown": cancels, "actions": reading.actions()}
 
 
-def _flag(entity: Entity, name: str, default: bool = True) -> bool:
-    text = entity.texts(name, bool)
-    try:
-        return default if text is None else truth_of(text)
-    except LaunchError as error:
-        raise entity.error(f"'{name}': {error}") from None
+def _shutdown(reading: Reading) -> Arguments:
+    return {"reason": reading.value("reason")}
 
 
-def _only_attributes(entity: Entity, names: tuple[str, ...]) -> None:
-    """Check the attributes of an element that holds actions of any kind."""
-    Entity(entity.tag, entity.place, entity.attributes).check(names)
+def _append_env(reading: Reading) -> Arguments:
+    prepend, separator = reading.parsed("prepend", bool), reading.parsed("separator")
+    return {**_named(reading, name="name", value="value"), "prepend": prepend, "separator": separator}
 
 
-BUILDERS: dict[str, Build] = {
-    "append_env": _append_env,
-    "arg": _arg,
-    "executable": _executable,
-    "group": _group,
-    "include": _include,
-    "let": _let,
-    "log": _log,
-    "log_info": _log,
-    "pop_env": _with(actions.PopEnvironment),
-    "push_env": _with(actions.PushEnvironment),
-    "push_ros_namespace": _push_namespace,
-    "reset": _reset,
-    "reset_env": _with(actions.ResetEnvironment),
-    "ros_timer": _timer,
-    "set_env": _with(actions.SetEnvironmentVariable, "name", "value"),
-    "set_launch_configuration": _let,
-    "set_parameter": _with(ros.SetParameter, "name", "value"),
-    "set_parameters_from_file": _with(ros.SetParametersFromFile, "filename"),
-    "set_remap": _with(ros.SetRemap, "from", "to"),
-    "set_ros_log_dir": _with(ros.SetROSLogDir, "new_log_dir"),
-    "set_use_sim_time": _set_use_sim_time,
-    "shutdown": _shutdown,
-    "timer": _timer,
-    "unset_env": _with(actions.UnsetEnvironmentVariable, "name"),
-    "unset_launch_configuration": _with(actions.UnsetLaunchConfiguration, "name"),
+def _set_use_sim_time(reading: Reading) -> Arguments:
+    """Read it as in Python: there ROS 2 hands a list of substitutions to rclpy, which refuses it."""
+    value = reading.entity.get_attr("value", data_type=bool)
+    return {"value": value is True or value == "true"}
+
+
+def _named(reading: Reading, **names: str) -> Arguments:
+    """Return the substitutions in attributes, which all must be there, by the names of arguments."""
+    return {argument: reading.needed(name) for argument, name in names.items()}
+
+
+ROWS: dict[type, Callable[[Reading], Arguments]] = {
+    actions.AppendEnvironmentVariable: _append_env,
+    actions.DeclareLaunchArgument: _arg,
+    actions.ExecuteProcess: _executable,
+    actions.GroupAction: _group,
+    actions.IncludeLaunchDescription: _include,
+    actions.Log: functools.partial(_named, msg="message", level="level"),
+    actions.LogInfo: functools.partial(_named, msg="message"),
+    actions.ResetLaunchConfigurations: lambda reading: {"launch_configurations": reading.mapping("keep")},
+    actions.SetEnvironmentVariable: functools.partial(_named, name="name", value="value"),
+    actions.SetLaunchConfiguration: functools.partial(_named, name="name", value="value"),
+    actions.Shutdown: _shutdown,
+    actions.TimerAction: _timer,
+    actions.UnsetEnvironmentVariable: functools.partial(_named, name="name"),
+    actions.UnsetLaunchConfiguration: functools.partial(_named, name="name"),
+    ros.ComposableNodeContainer: _container,
+    ros.LifecycleNode: _lifecycle_node,
+    ros.LoadComposableNodes: _load,
+    ros.Node: _node,
+    ros.PushROSNamespace: functools.partial(_named, namespace="namespace"),
+    ros.SetParameter: functools.partial(_named, name="name", value="value"),
+    ros.SetParametersFromFile: functools.partial(_named, filename="filename"),
+    ros.SetROSLogDir: functools.partial(_named, new_log_dir="new_log_dir"),
+    ros.SetRemap: functools.partial(_named, src="from", dst="to"),
+    ros.SetUseSimTime: _set_use_sim_time,
 }
-"""Builders by tag, in the spelling with `_`; those of nodes are beside them."""
+"""Functions that read the arguments of an action, by its class."""
+TAGS: dict[str, type[Action]] = {
+    "append_env": actions.AppendEnvironmentVariable,
+    "arg": actions.DeclareLaunchArgument,
+    "executable": actions.ExecuteProcess,
+    "group": actions.GroupAction,
+    "include": actions.IncludeLaunchDescription,
+    "let": actions.SetLaunchConfiguration,
+    "lifecycle_node": ros.LifecycleNode,
+    "load_composable_node": ros.LoadComposableNodes,
+    "load_composable_nodes": ros.LoadComposableNodes,
+    "log_debug": actions.LogDebug,
+    "log_error": actions.LogError,
+    "log_info": actions.LogInfo,
+    "log_warning": actions.LogWarning,
+    "node": ros.Node,
+    "node_container": ros.ComposableNodeContainer,
+    "pop_env": actions.PopEnvironment,
+    "push_env": actions.PushEnvironment,
+    "push_ros_namespace": ros.PushROSNamespace,
+    "reset": actions.ResetLaunchConfigurations,
+    "reset_env": actions.ResetEnvironment,
+    "ros_timer": ros.ROSTimer,
+    "set_env": actions.SetEnvironmentVariable,
+    "set_launch_configuration": actions.SetLaunchConfiguration,
+    "set_parameter": ros.SetParameter,
+    "set_parameters_from_file": ros.SetParametersFromFile,
+    "set_remap": ros.SetRemap,
+    "set_ros_log_dir": ros.SetROSLogDir,
+    "set_use_sim_time": ros.SetUseSimTime,
+    "shutdown": actions.Shutdown,
+    "timer": actions.TimerAction,
+    "unset_env": actions.UnsetEnvironmentVariable,
+    "unset_launch_configuration": actions.UnsetLaunchConfiguration,
+}
+"""Classes by tag, in the spelling with `_`."""
+
+
+def methods() -> dict[str, Method]:
+    """Return the functions of an element and the parser, by the element's name."""
+    return {**{tag: cls.parse for tag, cls in TAGS.items()}, "log": _log}
+
+
+def _log(entity: Entity, parser: Parser) -> tuple[type[Action], Arguments]:
+    """Read a line; without a level it is of the level info, as before 2025."""
+    has_level = entity.get_attr("level", optional=True) is not None
+    return actions.Log.parse(entity, parser) if has_level else actions.LogInfo.parse(entity, parser)

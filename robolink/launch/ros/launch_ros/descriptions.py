@@ -158,7 +158,7 @@ class ParameterFile:
         """
         if not boolean(context, self.allow_substs):
             return None
-        from robolink.launch.ros.launch.frontend import parse_substitution
+        from robolink.launch.ros.launch.frontend.parse_substitution import parse_substitution
 
         path = self.evaluate(context)
         if not path.is_file():

@@ -3,32 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from typing import Any, TypeAlias, TypeVar
+import shlex
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeAlias
 
-from robolink.exceptions import nearest
 from robolink.launch.ros.launch.bases import LaunchError, Substitution
+from robolink.launch.ros.launch.frontend.expose import WrongNumberError, instantiate_substitution
+from robolink.launch.ros.launch.typed_values import ScalarTypesTuple, ValueTypeError
 from robolink.launch.ros.launch.utilities import TextSubstitution
 from robolink.system.terminal import shown
 
 __all__ = [
-    "expose_action",
-    "expose_substitution",
+    "parse_if_substitutions",
     "parse_substitution",
 ]
-
-
-T = TypeVar("T")
-
-
-def expose_action(name: str) -> Callable[[T], T]:
-    """Return a decorator without effect: one's own actions are for files in Python, not for the tag `name`."""
-    return lambda cls: cls
-
-
-def expose_substitution(name: str) -> Callable[[T], T]:
-    """Return a decorator without effect: substitutions of one's own are not for `name` in XML and YAML."""
-    return lambda cls: cls
 
 
 _ESCAPE = re.compile(r"\\(.)")
@@ -125,64 +113,57 @@ def _made(arguments: Sequence[Argument], written: str) -> Substitution:
     """Return the substitution that a name with arguments stands for."""
     if not arguments or len(arguments[0]) != 1 or not isinstance(arguments[0][0], TextSubstitution):
         raise SubstitutionSyntaxError(f"'{shown(written, 60)}' names no substitution")
-    name, given = arguments[0][0].text, arguments[1:]
-    makers = _makers()
-    if name in _OF_ROS_1:
-        raise SubstitutionSyntaxError(f"$({name} ...) is ROS 1: $({_OF_ROS_1[name]} ...) is what ROS 2 has")
-    if name not in makers:
-        raise SubstitutionSyntaxError(f"no substitution is called '{shown(name)}'{nearest(name, makers)}")
-    least, most, maker = makers[name]
-    if not least <= len(given) <= most:
-        number = str(least) if least == most else f"{least} to {most}" if most < MANY else f"{least} or more"
-        raise SubstitutionSyntaxError(f"$({name} ...) takes {number} arguments, got {len(given)}: {shown(written, 60)}")
-    made: Substitution = maker(*given)
-    return made
+    try:
+        return instantiate_substitution(arguments[0][0].text, arguments[1:])
+    except WrongNumberError as error:
+        raise SubstitutionSyntaxError(f"{error}: {shown(written, 60)}") from None
 
 
-_OF_ROS_1 = {"arg": "var", "find": "find-pkg-share", "optenv": "env"}
-MANY = 1000
-"""Upper bound of the arguments of those substitutions that take any number."""
+def parse_if_substitutions(value: Any) -> Any:
+    """Return a value with the substitutions in it: a text that has none, and a number, as they are.
+
+    Args:
+        value: A scalar, or a list of them.
+
+    Raises:
+        ValueTypeError: for a list with numbers of several types.
+    """
+    if isinstance(value, list):
+        found = [parse_if_substitutions(each) for each in value]
+        plain = [each for each in found if isinstance(each, ScalarTypesTuple)]
+        if len({type(each) for each in plain}) > 1:
+            raise ValueTypeError(f"expected a list of one type, got {value!r:.60}")
+        return found
+    if not isinstance(value, str) or not value:
+        return value
+    parts = parse_substitution(value)
+    return parts[0].text if len(parts) == 1 and isinstance(parts[0], TextSubstitution) else parts
 
 
-def _makers() -> dict[str, tuple[int, int, Callable[..., Any]]]:
-    """Return the substitutions by name: least and most arguments, and what makes one of them."""
-    from robolink.launch.ros.launch import substitutions as own
-    from robolink.launch.ros.launch_ros import substitutions as ros
+def words_of(parts: Iterable[Substitution]) -> list[list[Substitution]]:
+    """Return the words of a command line: texts are split as a shell does, and a substitution is in one word.
 
-    def joined(parts: Sequence[Argument]) -> Argument:
-        blank = TextSubstitution(text=" ")
-        return [each for index, part in enumerate(parts) for each in ([blank, *part] if index else part)]
+    Args:
+        parts: The command line, its texts and substitutions.
 
-    return {
-        "var": (1, 2, lambda name, default=None: own.LaunchConfiguration(name, default=default)),
-        "env": (1, 2, lambda name, default=None: own.EnvironmentVariable(name, default_value=default)),
-        "find-pkg-share": (1, 1, ros.FindPackageShare),
-        "find-pkg-prefix": (1, 1, ros.FindPackagePrefix),
-        "exec-in-pkg": (2, 2, ros.ExecutableInPackage),
-        "param": (1, 2, lambda name, default=None: ros.Parameter(name, default=default)),
-        "find-exec": (1, 1, lambda name: own.FindExecutable(name=name)),
-        "dirname": (0, 0, own.ThisLaunchFileDir),
-        "filename": (0, 0, own.ThisLaunchFile),
-        "launch_log_dir": (0, 0, own.LaunchLogDir),
-        "log_dir": (0, 0, own.LaunchLogDir),
-        "anon": (1, 1, own.AnonName),
-        "eval": (1, MANY, lambda *parts: own.PythonExpression(joined(parts))),
-        "command": (1, 2, _command),
-        "file-content": (1, 1, own.FileContent),
-        "not": (1, 1, own.NotSubstitution),
-        "and": (2, 2, own.AndSubstitution),
-        "or": (2, 2, own.OrSubstitution),
-        "any": (0, MANY, own.AnySubstitution),
-        "all": (0, MANY, own.AllSubstitution),
-        "equals": (2, 2, own.EqualsSubstitution),
-        "not-equals": (2, 2, own.NotEqualsSubstitution),
-        "if": (2, 3, own.IfElseSubstitution),
-        "join": (0, MANY, lambda *parts: own.StringJoinSubstitution(parts)),
-        "path-join": (1, MANY, lambda *parts: own.PathJoinSubstitution(parts)),
-    }
-
-
-def _command(command: Argument, on_stderr: Argument | None = None) -> Substitution:
-    from robolink.launch.ros.launch.substitutions import Command
-
-    return Command(command) if on_stderr is None else Command(command, on_stderr=on_stderr)
+    Raises:
+        SubstitutionSyntaxError: for a quote that is not closed within its text.
+    """
+    words: list[list[Substitution]] = [[]]
+    for part in parts:
+        if not isinstance(part, TextSubstitution):
+            words[-1].append(part)
+            continue
+        try:
+            pieces = shlex.split(part.text)
+        except ValueError as error:
+            reason = "ROS 2 splits the text at each substitution, so that quotes around one do not close"
+            raise SubstitutionSyntaxError(f"{error}: {reason}") from None
+        if part.text[:1].isspace():
+            words.append([])
+        for number, piece in enumerate(pieces):
+            words += [[]] if number else []
+            words[-1].append(TextSubstitution(text=piece))
+        if part.text[-1:].isspace():
+            words.append([])
+    return [each for each in words if each]
