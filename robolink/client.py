@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import (
+    BlockingCallError,
     DecodeError,
     ExternalShutdownException,
     InvalidHandle,
@@ -25,7 +26,7 @@ from robolink.running.entity import CLIENT, NOTHING, Entity
 from robolink.running.inbox import Inbox
 from robolink.service_introspection import ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
-from robolink.task import Future
+from robolink.task import Future, asyncio_loop
 from robolink.transport.base import Handle, Sink
 from robolink.wire import NO_HASH, EndpointKind, unpack_attachment
 
@@ -310,6 +311,8 @@ class Client(BaseClient):
 
     def _call(self, request: Message, timeout_sec: float | None, *, patient: bool) -> Any:
         executor = self.executor
+        if executor is None and self.node is not None and self.node._runs_itself_ and asyncio_loop() is not None:
+            raise BlockingCallError
         if executor is None or not executor.spins_here:
             return self._call_from_outside(request, timeout_sec, patient)
         # rclpy stops here for ever: the only thread waits for an answer that only it could receive.

@@ -33,6 +33,7 @@ RobolinkError
 │   ├─ ParameterImmutableException
 │   └─ ParameterUninitializedException (ValueError)
 ├─ TimeSourceChangedError                        a clock that began or ceased to follow /clock during a sleep
+├─ BlockingCallError (RuntimeError)              a call that would block the event loop of an AsyncNode
 ├─ ServiceError (RuntimeError)                   a call without an answer: no server, or one that went away
 └─ ExternalShutdownException                     the context was shut down while somebody spins
     ├─ InterruptedByUser (KeyboardInterrupt)     by Ctrl-C
@@ -377,6 +378,19 @@ class TimeSourceChangedError(RobolinkError):
 
 class ROSInterruptException(ExternalShutdownException):
     """A rate's sleep was ended because its context shut down: no fault of the callback that sleeps."""
+
+
+class BlockingCallError(RobolinkError, RuntimeError):
+    """A call would block the event loop of an AsyncNode, and so what it waits for. `text` is that of the error."""
+
+    def __init__(
+        self,
+        text: str = (
+            "this call would wait in the thread of the event loop, which could do nothing else meanwhile: await the"
+            " asynchronous one instead (send_goal_async, cancel_goal_async, get_result_async, lookup_transform_async)"
+        ),
+    ) -> None:
+        super().__init__(text)
 
 
 class ServiceError(RobolinkError, RuntimeError):

@@ -53,6 +53,7 @@ from robolink.running.destroyable import Destroyable
 from robolink.running.entity import Entity
 from robolink.service import Service as Service
 from robolink.subscription import Subscription as Subscription
+from robolink.task import Future
 from robolink.time_source import TimeSource
 from robolink.timer import Rate as Rate
 from robolink.timer import Timer as Timer
@@ -262,6 +263,23 @@ class BaseNode(Destroyable):
         """The executor (or pump) that the node's entities are attached to: also while it is parked there."""
         return None if self._executor_ is None else self._executor_()
 
+    @property
+    def _loop_(self) -> Any:
+        """The executor (or pump) that runs the node's callbacks; None while none does."""
+        return self._attached_to_
+
+    def _wait_until_(self, holds: Callable[[], bool], timeout_sec: float | None) -> Any:
+        """Wait until something holds of the graph; an AsyncNode returns what is to be awaited.
+
+        Args:
+            holds: Function that says so.
+            timeout_sec: Longest wait in seconds; None waits until the context ends, 0 or less does not wait.
+        """
+        return self._context.wait_until(holds, timeout_sec)
+
+    def _abandon_(self, future: Future[Any]) -> None:
+        """Give up a future whose call was ended with its client: as in rclpy, it stays open."""
+
     def _belong_to_(self, executor: Any) -> None:
         """Note the executor that has this node from now on; None for none."""
         self._executor_ = None if executor is None else weakref.ref(executor)
@@ -278,8 +296,8 @@ class BaseNode(Destroyable):
         """Return the arguments by which this kind of node's `create_...` let a callback run in a group."""
         raise NotImplementedError
 
-    def _group_of_action_(self) -> CallbackGroup:
-        """Return the callback group of an action that is given none."""
+    def _group_of_part_(self) -> CallbackGroup:
+        """Return the callback group of an action, or of another part of the node, that is given none."""
         raise NotImplementedError
 
     # Parameters: declaring
@@ -852,8 +870,12 @@ class Node(BaseNode):
     def _in_group_(self, group: CallbackGroup) -> dict[str, Any]:
         return {"callback_group": group}
 
-    def _group_of_action_(self) -> CallbackGroup:
+    def _group_of_part_(self) -> CallbackGroup:
         return self.default_callback_group
+
+    @property
+    def _loop_(self) -> Executor | None:
+        return self.executor
 
     @property
     def default_callback_group(self) -> CallbackGroup:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from robolink.client import Client
+from robolink.exceptions import InvalidHandle
 from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from robolink.interfaces.rcl_interfaces.msg import ParameterEvent
 from robolink.interfaces.rcl_interfaces.srv import (
@@ -16,18 +18,18 @@ from robolink.interfaces.rcl_interfaces.srv import (
     SetParameters,
     SetParametersAtomically,
 )
+from robolink.node_parts.making import make_client, make_subscription
 from robolink.parameter import Parameter as Parameter
 from robolink.parameter import parameter_dict_from_yaml_file
 from robolink.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+from robolink.subscription import Subscription
 from robolink.task import Future
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
-    from robolink.client import Client
     from robolink.event_handler import SubscriptionEventCallbacks
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.qos_overriding_options import QoSOverridingOptions
-    from robolink.subscription import Subscription
 
 Given: TypeAlias = Sequence["Parameter[Any] | ParameterMsg"]
 Callback: TypeAlias = Callable[[Any], None]
@@ -43,7 +45,7 @@ class AsyncParameterClient:
     Each call returns a future of the service's whole response, and calls `callback(future)` once that is there.
 
     Args:
-        node: Node that calls, and whose executor must spin.
+        node: BaseNode that calls, and whose executor must spin.
         remote_node_name: Name of the other node, relative to the namespace of `node` unless it begins with a slash.
         qos_profile: Quality of service of the clients.
         callback_group: Group of the clients; None is the node's default group.
@@ -51,7 +53,7 @@ class AsyncParameterClient:
 
     def __init__(
         self,
-        node: Node,
+        node: BaseNode,
         remote_node_name: str,
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
@@ -61,7 +63,7 @@ class AsyncParameterClient:
 
         def client(srv_type: type[Any], name: str) -> Client:
             full = f"{remote_node_name}/{name}"
-            return node.create_client(srv_type, full, qos_profile=qos_profile, callback_group=callback_group)
+            return make_client(node, Client, srv_type, full, qos_profile, callback_group or node._group_of_part_())
 
         self._get_parameter_client = client(GetParameters, "get_parameters")
         self._list_parameter_client = client(ListParameters, "list_parameters")
@@ -82,8 +84,16 @@ class AsyncParameterClient:
         """True if all six services are there."""
         return all(each.service_is_ready() for each in self._clients)
 
-    def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait until all six services are there.
+    def _are_there(self) -> bool:
+        try:
+            return self.services_are_ready()
+        except InvalidHandle:
+            if self.node.context.ok():
+                raise
+            return False  # the context ended between two looks, and destroyed the clients
+
+    def wait_for_services(self, timeout_sec: float | None = None) -> Any:
+        """Wait until all six services are there; of an AsyncNode it is awaited.
 
         Args:
             timeout_sec: Longest wait in seconds; None waits for ever, 0 or less does not wait.
@@ -91,13 +101,7 @@ class AsyncParameterClient:
         Returns:
             True if all are there.
         """
-        steady = self._clients[0]._context.time.steady
-        deadline = None if timeout_sec is None else steady() + int(timeout_sec * 1e9)
-        for each in self._clients:
-            left = None if deadline is None else max(0, deadline - steady()) / 1e9
-            if not each.service_is_ready() and not each.wait_for_service(left):
-                return False
-        return self.services_are_ready()
+        return self.node._wait_until_(self._are_there, timeout_sec)
 
     def list_parameters(
         self, prefixes: list[str] | None = None, depth: int | None = None, callback: Callback | None = None
@@ -199,16 +203,10 @@ class AsyncParameterClient:
             qos_overriding_options: Policies that parameters may change; None allows none.
             raw: True calls back with the serialized message (bytes).
         """
-        return self.node.create_subscription(
-            ParameterEvent,
-            "/parameter_events",
-            callback,
-            qos_profile,
-            callback_group=callback_group,
-            event_callbacks=event_callbacks,
-            qos_overriding_options=qos_overriding_options,
-            raw=raw,
-        )
+        group = callback_group or self.node._group_of_part_()
+        more = raw, None, event_callbacks, qos_overriding_options
+        args = ParameterEvent, "/parameter_events", callback, qos_profile, group, *more
+        return make_subscription(self.node, Subscription, *args)
 
 
 def _ask(client: Client, request: Any, callback: Callback | None) -> Future[Any]:

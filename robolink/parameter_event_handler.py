@@ -8,13 +8,15 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from robolink.interfaces.rcl_interfaces.msg import Parameter, ParameterEvent
+from robolink.node_parts.making import make_subscription
 from robolink.qos import QoSProfile, qos_profile_parameter_events
+from robolink.subscription import Subscription
 from robolink.text.names import absolute_namespace, join
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
     from robolink.event_handler import SubscriptionEventCallbacks
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.qos_overriding_options import QoSOverridingOptions
 
 
@@ -114,7 +116,7 @@ class ParameterEventHandler:
 
     def __init__(
         self,
-        node: Node,
+        node: BaseNode,
         qos_profile: QoSProfile = qos_profile_parameter_events,
         callback_group: CallbackGroup | None = None,
         event_callbacks: SubscriptionEventCallbacks | None = None,
@@ -124,15 +126,17 @@ class ParameterEventHandler:
         self.node = node
         self.qos_profile = qos_profile
         self._callbacks = ParameterEventHandler.Callbacks()
-        self.parameter_event_subscription = node.create_subscription(
+        self.parameter_event_subscription = make_subscription(
+            node,
+            Subscription,
             ParameterEvent,
             "/parameter_events",
             self._callbacks.event_callback,
             qos_profile,
-            callback_group=callback_group,
-            event_callbacks=event_callbacks,
-            qos_overriding_options=qos_overriding_options,
-            raw=raw,
+            callback_group or node._group_of_part_(),
+            raw,
+            events=event_callbacks,
+            overriding=qos_overriding_options,
         )
 
     def destroy(self) -> None:

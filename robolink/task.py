@@ -56,7 +56,7 @@ class Future(Generic[T]):
     def __await__(self) -> Generator[Any, None, T | None]:
         """Yield until done: to a task of an executor, to asyncio's event loop, or to whoever else drives it."""
         while not self.over():
-            task, loop = getattr(_running, "task", None), _asyncio_loop()
+            task, loop = getattr(_running, "task", None), asyncio_loop()
             if loop is not None and loop is not getattr(_running, "loop", None):
                 yield from _in_asyncio(self, loop)
                 continue
@@ -166,7 +166,7 @@ class Future(Generic[T]):
         self._executor = (lambda: None) if executor is None else weakref.ref(executor)
 
 
-def _asyncio_loop() -> asyncio.AbstractEventLoop | None:
+def asyncio_loop() -> asyncio.AbstractEventLoop | None:
     """Return the event loop that runs in this thread, if there is one."""
     running = getattr(sys.modules.get("asyncio"), "_get_running_loop", None)  # where it was not imported, no loop runs
     return None if running is None else running()
@@ -227,7 +227,7 @@ class Task(Future[T]):
         before = getattr(_running, "task", None), getattr(_running, "loop", None)
         try:
             self._executing, self.awaits = True, None
-            _running.task, _running.loop = self, _asyncio_loop()
+            _running.task, _running.loop = self, asyncio_loop()
             self._step()
         finally:
             self._executing = False

@@ -29,7 +29,7 @@ from robolink.waitable import Waitable
 if TYPE_CHECKING:
     from robolink.clock import Clock
     from robolink.message import Action, Message
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.service_introspection import ServiceIntrospectionState
 
 
@@ -110,7 +110,7 @@ class ActionClient(Waitable):
 
     def __init__(
         self,
-        node: Node,
+        node: BaseNode,
         action_type: type[Any],
         action_name: str,
         *,
@@ -125,7 +125,7 @@ class ActionClient(Waitable):
         """Create a client of an action.
 
         Args:
-            node: Node of the client; it must be spun for anything to arrive.
+            node: BaseNode of the client; it must be spun for anything to arrive.
             action_type: Class of the action, such as `example_interfaces.action.Fibonacci`.
             action_name: Name of the action; a relative one is resolved as the node's names are.
             callback_group: Group of the feedback callbacks; the node's default group by default. Responses come
@@ -141,7 +141,7 @@ class ActionClient(Waitable):
         Raises:
             ValueError: if the name is not valid, or the class is not an action.
         """
-        super().__init__(callback_group or node._group_of_action_())
+        super().__init__(callback_group or node._group_of_part_())
         self._node, self._action_type = node, checked_action_type(action_type)
         self._action_name = node.resolve_topic_name(action_name)
         self._logger = node.get_logger().get_child("action_client")
@@ -151,6 +151,8 @@ class ActionClient(Waitable):
         self._statuses: dict[bytes, int] = {}
         self._lane = next_number()
         self._parts: list[Client | Subscription[Any]] = []
+        self._asked: dict[Future[Any], None] = {}
+        """Futures that are not done."""
         try:
             self._declare_topics(feedback_sub_qos_profile, status_sub_qos_profile)
             self._declare_clients(result_service_qos_profile, cancel_service_qos_profile, goal_service_qos_profile)
@@ -349,12 +351,13 @@ class ActionClient(Waitable):
     ) -> Future[Any]:
         """Call a service; the future gets ``answered(response)``, or ``failed(error)``, or nothing if that is None."""
         response = client.try_call_async(request)
-        future: Future[Any] = Future(executor=self._node.executor)
+        future: Future[Any] = Future(executor=self._node._loop_)
 
         def pass_on() -> None:
-            if future.cancelled():
+            self._asked.pop(future, None)
+            if future.over():
                 return
-            future.set_executor(self._node.executor)  # there may not have been one before
+            future.set_executor(self._node._loop_)  # there may not have been one before
             error = response.exception()
             if error is None:
                 _complete(future, answered, response.result())
@@ -362,9 +365,11 @@ class ActionClient(Waitable):
                 future.set_exception(reason)
 
         def give_up() -> None:
+            self._asked.pop(future, None)
             if future.cancelled():
                 client.remove_pending_request(response)
 
+        self._asked[future] = None
         response.when_done(pass_on)
         future.when_done(give_up)
         return future
@@ -409,8 +414,8 @@ class ActionClient(Waitable):
         topics = (each for each in self._parts if isinstance(each, Subscription))
         return all(each.service_is_ready() for each in clients) and all(each.get_publisher_count() for each in topics)
 
-    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until there is a server.
+    def wait_for_server(self, timeout_sec: float | None = None) -> Any:
+        """Wait until there is a server; of an AsyncNode it is awaited: `await client.wait_for_server()`.
 
         Args:
             timeout_sec: Longest wait in seconds; None waits until the context ends.
@@ -418,7 +423,7 @@ class ActionClient(Waitable):
         Returns:
             True if there is a server, False after the timeout or at the context's end.
         """
-        return self._node.context.wait_until(self.server_is_ready, timeout_sec)
+        return self._node._wait_until_(self.server_is_ready, timeout_sec)
 
     # Called by the node and the executor
 
@@ -431,9 +436,11 @@ class ActionClient(Waitable):
         return [getattr(self._action_type.Impl, each) for each in self._action_type.Impl.__struct_fields__]
 
     def destroy(self) -> None:
-        """Destroy the client: futures under way are never done."""
+        """Destroy the client: futures under way are never done; of an AsyncNode they are cancelled."""
         for part in self._parts:
             part.destroy()
+        for future in list(self._asked):
+            self._node._abandon_(future)
         self._node.remove_waitable(self)
 
 

@@ -36,7 +36,7 @@ from robolink.waitable import Waitable
 if TYPE_CHECKING:
     from robolink.clock import Clock
     from robolink.message import Action
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.service_introspection import ServiceIntrospectionState
 
 
@@ -188,7 +188,7 @@ class ActionServer(Waitable):
 
     def __init__(
         self,
-        node: Node,
+        node: BaseNode,
         action_type: type[Any],
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle], Any],
@@ -207,7 +207,7 @@ class ActionServer(Waitable):
         """Create a server of an action.
 
         Args:
-            node: Node of the server; it must be spun.
+            node: BaseNode of the server; it must be spun.
             action_type: Class of the action, such as `example_interfaces.action.Fibonacci`.
             action_name: Name of the action; a relative one is resolved as the node's names are.
             execute_callback: Called with a goal handle for each goal to execute; may be a coroutine function. The
@@ -231,7 +231,7 @@ class ActionServer(Waitable):
             ValueError: if the name is not valid, or the class is not an action.
             TypeError: if `execute_callback` cannot be called.
         """
-        super().__init__(callback_group or node._group_of_action_())
+        super().__init__(callback_group or node._group_of_part_())
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
@@ -384,9 +384,14 @@ class ActionServer(Waitable):
         except (ExternalShutdownException, KeyboardInterrupt):  # Ctrl-C is not a fault of the callback
             self._end(handle, self._action_type.Result())
             raise
+        except GeneratorExit:
+            raise
         except Exception as error:  # noqa: BLE001 - the goal has failed, not the node
             self._logger.error(f"{self._named(handle)}: an exception in its execute callback\n{formatted(error)}")
             self._end(handle, self._action_type.Result())
+        except BaseException:  # asyncio cancels it: the client is not to wait for ever
+            self._end(handle, self._action_type.Result())
+            raise
         else:
             self._end(handle, self._checked(handle, result))
 

@@ -16,7 +16,7 @@ from robolink.service import RequestHeader, Service
 from robolink.timer import Timer
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.running.ports import Loop
 
 
@@ -90,7 +90,7 @@ class Results:
         forget: Callable[[bytes], None],
         timeout: float,
         group: CallbackGroup,
-        node: Node,
+        node: BaseNode,
     ) -> None:
         self._answer, self._forget = answer, forget
         self._timeout, self._clock = int(timeout * 1e9), node.get_clock()

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine, Generator
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from robolink.clock_type import ClockType
@@ -29,6 +29,31 @@ from robolink.type_support import MsgT
 
 if TYPE_CHECKING:
     from robolink.subscription_content_filter_options import ContentFilterOptions
+    from robolink.task import Future
+
+
+T = TypeVar("T")
+
+LOOK = 0.1
+"""Time between two looks at the graph, in seconds."""
+
+
+class Awaited(Generic[T]):
+    """Result that is to be awaited, of a method that returns it at once to a node in a thread.
+
+    Args:
+        work: Coroutine that finds it.
+    """
+
+    def __init__(self, work: Coroutine[Any, Any, T]) -> None:
+        self._work = work
+
+    def __await__(self) -> Generator[Any, None, T]:
+        return self._work.__await__()
+
+    def __bool__(self) -> bool:
+        self._work.close()
+        raise TypeError("await this wait first, since its node is an AsyncNode: `if await client.wait_for_server():`")
 
 
 class AsyncNode(BaseNode):
@@ -63,7 +88,7 @@ class AsyncNode(BaseNode):
     def _in_group_(self, group: CallbackGroup) -> dict[str, Any]:
         return {"concurrent": isinstance(group, ReentrantCallbackGroup)}
 
-    def _group_of_action_(self) -> CallbackGroup:
+    def _group_of_part_(self) -> CallbackGroup:
         return MutuallyExclusiveCallbackGroup()
 
     def get_clock(self) -> AsyncClock:
@@ -144,6 +169,24 @@ class AsyncNode(BaseNode):
         else:
             with contextlib.suppress(RuntimeError):  # the loop is closed
                 pump.loop.call_soon_threadsafe(self._ended_.set)
+
+    def _wait_until_(self, holds: Callable[[], bool], timeout_sec: float | None) -> Awaited[bool]:
+        return Awaited(self._look_until_(holds, timeout_sec))
+
+    async def _look_until_(self, holds: Callable[[], bool], timeout_sec: float | None) -> bool:
+        steady = self._context.time.steady
+        deadline = None if timeout_sec is None else steady() + int(timeout_sec * 1e9)
+        while not holds():
+            left = LOOK if deadline is None else min(LOOK, (deadline - steady()) / 1e9)
+            if left <= 0 or not self._context.ok():
+                return False
+            await asyncio.sleep(left)
+        return True
+
+    def _abandon_(self, future: Future[Any]) -> None:
+        if not future.over():
+            future.set_exception(asyncio.CancelledError())
+            future.exception()  # else it would be reported if nobody awaits it
 
     async def wait_for_node(self, fully_qualified_node_name: str, *, check_interval: float = 0.1) -> None:
         """Wait until a node is in the graph; end the wait by `asyncio.timeout`.

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
-from robolink.exceptions import ServiceError
+from robolink.exceptions import BlockingCallError
 from robolink.running.entity import NOTHING, Entity
 from robolink.running.ready_queue import ReadyQueue, earlier
 from robolink.system.waits import A_WHILE
@@ -106,12 +106,12 @@ class Pump:
         return work
 
     def serve_until(self, future: Future[Any], deadline: int | None, *, serving: bool = True) -> None:
-        """Raise ServiceError: the event loop cannot wait in the middle of a callback."""
-        raise ServiceError(_BLOCKS)
+        """Raise BlockingCallError: the event loop cannot wait in the middle of a callback."""
+        raise BlockingCallError
 
     def waiting_for(self, services: Sequence[Any]) -> AbstractContextManager[bool]:
-        """Raise ServiceError: the event loop cannot wait in the middle of a callback."""
-        raise ServiceError(_BLOCKS)
+        """Raise BlockingCallError: the event loop cannot wait in the middle of a callback."""
+        raise BlockingCallError
 
     def is_last_awake(self) -> bool:
         """Return True: the event loop has one thread."""
@@ -210,12 +210,6 @@ class Pump:
         self.inbox.close()
         for task in list(self._running):
             task.cancel()
-
-
-_BLOCKS = (
-    "this call would block the event loop, which nothing could wake then: await the asynchronous one instead, such as"
-    " `await client.send_goal_async(goal)`"
-)
 
 
 class _Work(Future[Any]):

@@ -70,6 +70,9 @@ class ContextLike(Protocol):
 class NodeLike(Protocol):
     """Node as seen by the entities it owns."""
 
+    _runs_itself_: bool
+    """True for a node on asyncio's event loop, which no executor may run."""
+
     _number_: int
     """Number in the order in which nodes were made: of several in an executor, the older has its turns first."""
 
@@ -86,9 +89,6 @@ class SpunNode(NodeLike, OverriddenNode, Protocol):
 
     _turns_: list[Any]
     """Entities whose turn was still to come when the last executor removed the node, in order."""
-
-    _runs_itself_: bool
-    """True for a node on asyncio's event loop, which no executor may run."""
 
     _is_parked_: bool
     """True while its entities are attached to an executor, but it belongs to none."""

@@ -12,7 +12,7 @@ from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.tf2.transform_broadcaster import as_list
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
 
 
 class StaticTransformBroadcaster:
@@ -23,7 +23,7 @@ class StaticTransformBroadcaster:
         qos: Profile or depth of the publisher; depth 1 and TRANSIENT_LOCAL by default.
     """
 
-    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
+    def __init__(self, node: BaseNode, qos: QoSProfile | int | None = None) -> None:
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.pub_tf = node.create_publisher(TFMessage, "/tf_static", latched if qos is None else qos)
         self.net_message = TFMessage()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from robolink.tf2.transform_listener import DEFAULT_STATIC_TF_TOPIC, DEFAULT_TF_TOPIC, TransformListener
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.qos import QoSProfile
     from robolink.tf2.buffer import Buffer
 
@@ -28,7 +28,7 @@ class StaticTransformListener(TransformListener):
     def __init__(
         self,
         buffer: Buffer,
-        node: Node | None,
+        node: BaseNode | None,
         *,
         spin_thread: bool = False,
         static_qos: QoSProfile | int | None = None,

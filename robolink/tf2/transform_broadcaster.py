@@ -10,7 +10,7 @@ from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
 
 DEPTH = 100
 """Default depth of the publisher, in messages."""
@@ -24,7 +24,7 @@ class TransformBroadcaster:
         qos: Profile or depth of the publisher; depth 100 by default.
     """
 
-    def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
+    def __init__(self, node: BaseNode, qos: QoSProfile | int | None = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", DEPTH if qos is None else qos)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802 - tf2's name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import threading
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.exceptions import ExternalShutdownException
@@ -16,7 +16,7 @@ from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.tf2.buffer import Buffer
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode, Node
 
 DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
@@ -46,7 +46,7 @@ class TransformListener:
     def __init__(
         self,
         buffer: Buffer,
-        node: Node | None,
+        node: BaseNode | None,
         *,
         spin_thread: bool = False,
         qos: QoSProfile | int | None = None,
@@ -77,7 +77,7 @@ class TransformListener:
         self.tf_static_sub.serves = True
         if spin_thread:
             self.executor = SingleThreadedExecutor(context=node.context)
-            self.executor.add_node(node)
+            self.executor.add_node(cast("Node", node))  # TypeError for an AsyncNode
             self.dedicated_listener_thread = threading.Thread(
                 target=_spin, args=(self.executor,), name="robolink tf listener", daemon=True
             )

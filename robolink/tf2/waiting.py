@@ -18,14 +18,14 @@ from robolink.tf2.core import LOGGER
 
 if TYPE_CHECKING:
     from robolink.context import Context
-    from robolink.node import Node
+    from robolink.node import BaseNode
 
 
 class Source(Protocol):
     """Protocol of a listener that fills a buffer while its node is spun."""
 
     @property
-    def node(self) -> Node:
+    def node(self) -> BaseNode:
         """The node whose subscriptions fill the buffer."""
 
 
@@ -69,7 +69,7 @@ class Waits:
         """
         nodes = [each.node for each in self.sources]
         for node in nodes:
-            executor = node.executor
+            executor = node._loop_
             if executor is not None and executor.spins_here:
                 future = self.future(lookup)
                 executor.serve_until(future, node.context.time.steady() + span)
@@ -92,9 +92,9 @@ class Waits:
 
         time.wait_notified(lookup.settled, deadline, block)
 
-    def _warn_of_idle_node(self, nodes: list[Node], span: int) -> None:
+    def _warn_of_idle_node(self, nodes: list[BaseNode], span: int) -> None:
         """Warn once that nobody spins the listener."""
-        if self._hinted or any(node.executor is not None and node.executor.spinning for node in nodes):
+        if self._hinted or any(node._loop_ is not None and node._loop_.spinning for node in nodes):
             return
         self._hinted = True
         get_logger(LOGGER).warning(

@@ -10,7 +10,7 @@ from robolink.companions.message_filters.simple_filter import SimpleFilter
 from robolink.time import Time
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
     from robolink.qos import QoSProfile
 
 
@@ -26,7 +26,7 @@ class Subscriber(SimpleFilter):
     """
 
     def __init__(
-        self, node: Node, msg_type: type[Any], topic: str, qos_profile: QoSProfile | int = 10, **kwargs: Any
+        self, node: BaseNode, msg_type: type[Any], topic: str, qos_profile: QoSProfile | int = 10, **kwargs: Any
     ) -> None:
         super().__init__()
         self.node, self.topic = node, topic
