@@ -64,7 +64,8 @@ launch_testing.asserts launch_testing.asserts assert_exit_codes assert_output as
 launch_testing.event_handlers launch_testing.event_handlers stdout_ready_listener
 launch_testing.tools launch_testing.text text
 launch_testing.util launch_testing.util proc_lookup
-launch_testing_ros launch_testing_ros data_republisher message_pump tools wait_for_topics
+launch_testing_ros launch_testing_ros data_republisher message_pump test_runner tools wait_for_topics
+launch_testing_ros.tools launch_testing_ros output
 nav2_common nav2_common launch
 """
 """A package of ROS 2's launch, the module of robolink's, and the modules of the package that this one stands for: ROS 2

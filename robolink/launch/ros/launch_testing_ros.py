@@ -11,14 +11,18 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from robolink.context import Context
+from robolink.event_handler import SubscriptionEventCallbacks
 from robolink.exceptions import ExternalShutdownException
 from robolink.executors import SingleThreadedExecutor
 from robolink.launch.ros.launch_testing import tools as launch_testing_tools
+from robolink.launch.ros.launch_testing.test_runner import LaunchTestRunner
 from robolink.node import Node
+from robolink.qos import QoSProfile
 from robolink.system import waits
 
 __all__ = [
     "DataRepublisher",
+    "LaunchTestRunner",
     "MessagePump",
     "WaitForTopics",
     "basic_output_filter",
@@ -118,6 +122,10 @@ class WaitForTopics:
         topic_tuples: Topics, each with its type.
         timeout: Longest wait in seconds.
         messages_received_buffer_length: Number of messages that are stored of each topic.
+        trigger: Function that makes others publish, such as by publishing itself: `wait` calls it with the node, and
+            with its own arguments, once a publisher of one of the topics is connected, or once the time is over.
+        node_namespace: Namespace of the node; None is the root.
+        qos_profile: QoS of the subscriptions, or its depth.
     """
 
     def __init__(
@@ -125,29 +133,49 @@ class WaitForTopics:
         topic_tuples: Iterable[tuple[str, type]],
         timeout: float = 5.0,
         messages_received_buffer_length: int = 10,
+        trigger: Callable[..., object] | None = None,
+        node_namespace: str | None = None,
+        qos_profile: QoSProfile | int = 10,
     ) -> None:
+        if trigger is not None and not callable(trigger):
+            raise TypeError(f"trigger is a function of the node, got {type(trigger).__name__}")
         self.topic_tuples, self.timeout = list(topic_tuples), timeout
         self.messages_received_buffer_length = messages_received_buffer_length
+        self.trigger, self.node_namespace, self.qos_profile = trigger, node_namespace, qos_profile
         self._received: dict[str, deque[Any]] = {}
-        self._all_came = threading.Event()
+        self._all_came, self._is_connected = threading.Event(), threading.Event()
         self._context = Context()
         self._context.init()
-        self._node = Node(f"_test_node_{uuid.uuid4().hex[:10]}", context=self._context)
+        name = f"_test_node_{uuid.uuid4().hex[:10]}"
+        self._node = Node(name, context=self._context, namespace=node_namespace)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._is_subscribed = False
         self._thread = threading.Thread(target=self._spin, name="wait for topics", daemon=True)
         self._thread.start()
 
-    def wait(self) -> bool:
-        """Wait for a message on each topic; return whether they came in time."""
+    def wait(self, *args: Any, **kwargs: Any) -> bool:
+        """Wait for a message on each topic; return whether they came in time.
+
+        Args:
+            *args: Further arguments of the trigger.
+            **kwargs: Further arguments of the trigger, by name.
+        """
         self._all_came.clear()
         self._received = {}
         if not self._is_subscribed:
             self._is_subscribed = True
+            matched = SubscriptionEventCallbacks(matched=self._note_match)
             for name, kind in self.topic_tuples:
-                self._node.create_subscription(kind, name, self._hear(name), 10)
+                self._node.create_subscription(kind, name, self._hear(name), self.qos_profile, event_callbacks=matched)
+        if self.trigger is not None:
+            waits.wait(self._is_connected, self.timeout)
+            self.trigger(self._node, *args, **kwargs)
         return waits.wait(self._all_came, self.timeout)
+
+    def _note_match(self, info: Any) -> None:
+        if info.current_count > 0:
+            self._is_connected.set()
 
     def shutdown(self) -> None:
         """Leave the network."""
