@@ -67,6 +67,7 @@ class Suite(msgspec.Struct, forbid_unknown_fields=True, rename={"not_applicable"
         path: Folders of the checkout that are put on Python's path.
         installed: Folders of the checkout that the project's packages install, by their place in the prefix.
         depends: Packages in the prefix that the project depends on and nothing of which is needed but the name.
+        commands: Commands that the project's packages install, and that `robolink shim` writes.
         options: Further options of pytest.
         environment: Variables that the project's build sets; `{tests}` is the folder of the tests, `{prefix}` the
             prefix, `{types}` the workspace with test_msgs.
@@ -85,6 +86,7 @@ class Suite(msgspec.Struct, forbid_unknown_fields=True, rename={"not_applicable"
     path: list[str] = []
     installed: dict[str, str] = {}
     depends: list[str] = []
+    commands: list[str] = []
     options: list[str] = []
     environment: dict[str, str] = {}
     page: str = "peers.md"
@@ -223,6 +225,10 @@ def install(checkout: Path, suite: Suite, prefix: Path) -> None:
         marker.touch()
     for program in (prefix / "lib").glob("*/*"):
         program.chmod(0o755)
+    (prefix / "bin").mkdir(parents=True, exist_ok=True)
+    for command in suite.commands:
+        shim = ("-m", "robolink", "shim", command, "--force", "--folder", str(prefix / "bin"))
+        subprocess.run([sys.executable, *shim], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def environment(stage: Stage, domain: int) -> dict[str, str]:
@@ -231,6 +237,8 @@ def environment(stage: Stage, domain: int) -> dict[str, str]:
     chosen = {"ROBOLINK_TRANSPORT": "memory"} if stage.transport == "memory" else {"ROS_DOMAIN_ID": str(domain)}
     if stage.suite.installed or stage.suite.depends:
         chosen["AMENT_PREFIX_PATH"] = str(stage.prefix)
+    if stage.suite.commands:
+        chosen["PATH"] = f"{stage.prefix / 'bin'}{os.pathsep}{os.environ.get('PATH', '')}"
     places = {"tests": stage.tests, "prefix": stage.prefix, "types": TYPES.parents[1]}
     chosen |= {name: text.format_map(places) for name, text in stage.suite.environment.items()}
     own = (str((stage.checkout / each).absolute()) for each in stage.suite.path)

@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import unittest
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -27,6 +27,7 @@ from robolink.launch.ros.launch.bases import Event, LaunchContext
 from robolink.launch.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
 from robolink.launch.ros.launch_testing.io_handler import ActiveIoHandler
+from robolink.launch.ros.launch_testing.isolation import own_network
 from robolink.launch.ros.launch_testing.loader import LaunchTestError, bound, isolated, normalized
 from robolink.launch.ros.launch_testing.markers import POST_SHUTDOWN, launches
 from robolink.launch.ros.launch_testing.proc_info_handler import ActiveProcInfoHandler
@@ -34,15 +35,12 @@ from robolink.launch.ros.surroundings import surroundings
 from robolink.launch.system import read_description
 from robolink.system import waits
 from robolink.testing.supervisor_thread import Launch
-from robolink.transport.port_sharing import free_domain
 from robolink.utilities import try_shutdown
 
 if TYPE_CHECKING:
     from robolink.launch.entry import Direct, Stage
     from robolink.supervisor.events import Exited
 
-NETWORK = "localhost"
-"""Network of the processes and of the test, unless one is asked for: this machine's loopback alone."""
 READY_WITHIN = 15.0
 """Timeout of the ReadyToTest action, in s, as in ROS 2."""
 FOR_EVER = 1e6
@@ -130,7 +128,7 @@ class LaunchTest:
 
     def _start(self) -> None:
         with ExitStack() as stack:
-            domain = _domain(stack)
+            domain = stack.enter_context(own_network())
             system = read_description(self._description(), self._path, self._given)
             for note in system.notes:
                 sys.stderr.write(f"[launch] {note}\n")
@@ -179,26 +177,6 @@ class LaunchTest:
             self._could_not_start.append(event.cause)
 
 
-def _domain(stack: ExitStack) -> int:
-    """Set the environment for tests and processes until the end of `stack`, and return their domain id."""
-    text = os.environ.get("ROS_DOMAIN_ID", "")
-    domain = int(text) if text.isascii() and text.isdecimal() else stack.enter_context(free_domain())
-    changed = {"ROS_DOMAIN_ID": str(domain), "ROBOLINK_TRANSPORT": "zenoh"}
-    changed["ROBOLINK_NETWORK"] = os.environ.get("ROBOLINK_NETWORK") or NETWORK
-    before = {name: os.environ.get(name) for name in changed}
-    os.environ.update(changed)
-    stack.callback(_restore, before)
-    return domain
-
-
-def _restore(before: Mapping[str, str | None]) -> None:
-    for name, value in before.items():
-        if value is None:
-            os.environ.pop(name, None)
-        else:
-            os.environ[name] = value
-
-
 DESCRIBE = "generate_test_description"
 """Name of the function that a launch test has."""
 _RUNNERS = ("_pytest", "pluggy", "robolink.testing", "robolink.launch.ros.launch_testing")
@@ -213,14 +191,17 @@ class LaunchTestModule(pytest.Module):
         with surroundings(home_of(self.path, None)):
             return super()._getobj()  # type: ignore[no-untyped-call]
 
-    def collect(self) -> Iterator[LaunchTestClass]:
-        """Yield the test classes, for each set of parameters; those of after the shutdown come last."""
-        describe = getattr(self.obj, DESCRIBE)
+    def collect(self) -> Iterable[pytest.Item | pytest.Collector]:
+        """Return the test classes, for each set of parameters; those of after the shutdown come last."""
+        self._runs: list[LaunchTest] = []
+        describe = getattr(self.obj, DESCRIBE, None)
+        return super().collect() if describe is None else self._classes(describe)  # only a text in it was a launch test
+
+    def _classes(self, describe: Callable[..., Any]) -> Iterator[LaunchTestClass]:
         for mark in getattr(describe, "pytestmark", []):
             if mark.name not in OWN_MARKS:
                 self.own_markers.append(mark)
                 self.keywords[mark.name] = mark
-        self._runs: list[LaunchTest] = []
         for one, parameters in launches(describe):
             run = LaunchTest(one, self.path, parameters, launch_arguments(self.config))
             self._runs.append(run)

@@ -133,7 +133,8 @@ class Reactions(Generic[T]):
 
         def emit() -> None:
             for each in (1, 2) if fd is None else (fd,):
-                self._emit(process_events.ProcessIO(action=action, text=line, fd=each, **details))
+                kind = process_events.ProcessStdout if each == 1 else process_events.ProcessStderr
+                self._emit(kind(action=action, text=line, **details))
 
         return self._following(now, emit)
 

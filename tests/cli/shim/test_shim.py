@@ -9,6 +9,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -198,22 +199,53 @@ def test_the_other_verbs(capsys: Captured) -> None:
     assert capsys.readouterr().err == "robolink: colcon graph is not here: colcon build | colcon list | colcon test\n"
 
 
-def test_launch_test_leads_to_pytest(tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[list[str]] = []
+TESTED = """
+import sys, unittest
+import launch, launch_testing, launch_testing.actions
+from launch.actions import DeclareLaunchArgument, ExecuteProcess
+from launch.substitutions import LaunchConfiguration
 
-    def note(words: list[str]) -> int:
-        asked.append(words)
-        return 3
+def generate_test_description():
+    process = ExecuteProcess(cmd=[sys.executable, "-c", "import sys; print(sys.argv[1])", LaunchConfiguration("speed")])
+    declared = DeclareLaunchArgument("speed", default_value="1", description="how fast")
+    actions = [declared, process, launch_testing.util.KeepAliveProc(), launch_testing.actions.ReadyToTest()]
+    return launch.LaunchDescription(actions), {"process": process}
 
-    monkeypatch.setattr(pytest, "main", note)
-    file = tmp_path / "a_launch_test.py"
-    file.touch()
-    assert launch_test.main([str(file), "speed:=2", "--junit-xml", "x.xml"]) == 3
-    assert asked == [["-v", str(file), "--junit-xml", "x.xml", "--launch-args", "speed:=2"]]
+class TestIt(unittest.TestCase):
+    def test_speed(self, proc_output, process):
+        proc_output.assertWaitFor("2", process, stream="stdout")
+
+@launch_testing.post_shutdown_test()
+class TestAfterwards(unittest.TestCase):
+    def test_codes(self, proc_info, process, test_args):
+        launch_testing.asserts.assertExitCodes(proc_info, process=process)
+        self.assertEqual(test_args, {"speed": "2"})
+"""
+
+
+@pytest.mark.processes
+def test_launch_test_runs_the_tests_of_a_file(tmp_path: Path) -> None:
+    (tmp_path / "a.py").write_text(TESTED)
+
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "robolink.cli.shim.launch_test", "a.py", *words]
+        return subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+
+    done = run("speed:=2", "--junit-xml", "a.xml", "--package-name", "bot")
+    assert (done.returncode, done.stderr.count("... ok")) == (0, 2), done.stderr
+    report = ElementTree.parse(tmp_path / "a.xml").getroot()
+    assert [each.get("classname") for each in report.iter("testcase")] == ["bot.TestIt", "bot.TestAfterwards"]
+    assert (report[0].get("name"), report.get("tests"), report.get("failures")) == ("bot.a.launch_tests", "2", "0")
+    shown = run("--show-args")
+    assert (shown.returncode, "'speed':\n        how fast\n" in shown.stdout) == (0, True)
+    assert run("speed").stderr == "robolink: malformed launch argument 'speed': expected NAME:=VALUE\n"
+
+
+def test_launch_test_tells_what_it_takes(tmp_path: Path, capsys: Captured) -> None:
     assert launch_test.main([]) == 0
     assert capsys.readouterr().out.startswith("launch_test FILE [NAME:=VALUE]...")
     assert launch_test.main(["gone.py"]) == 2
-    assert capsys.readouterr().err.startswith("robolink: there is no Python file among 'gone.py': launch_test FILE")
+    assert capsys.readouterr().err.startswith("robolink: there is no file among 'gone.py': launch_test FILE")
 
 
 def test_a_sourced_workspace_is_known_in_every_folder(

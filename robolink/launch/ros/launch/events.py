@@ -161,7 +161,46 @@ class ProcessIO(RunningProcessEvent):
         self.from_stdin, self.from_stdout, self.from_stderr = (fd == each for each in (0, 1, 2))
 
 
-ProcessStdin = ProcessStdout = ProcessStderr = ProcessIO
+class ProcessStdin(ProcessIO):
+    """A process was written to.
+
+    Args:
+        text: The bytes.
+        **kwargs: Those of RunningProcessEvent.
+    """
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=0, **kwargs)
+
+
+class ProcessStdout(ProcessIO):
+    """A process has written to its standard output.
+
+    Args:
+        text: The bytes.
+        **kwargs: Those of RunningProcessEvent.
+    """
+
+    name = "launch.events.process.ProcessStdout"
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=1, **kwargs)
+
+
+class ProcessStderr(ProcessIO):
+    """A process has written to its standard error.
+
+    Args:
+        text: The bytes.
+        **kwargs: Those of RunningProcessEvent.
+    """
+
+    name = "launch.events.process.ProcessStderr"
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=2, **kwargs)
 
 
 class ProcessTargetedEvent(Event):

@@ -207,7 +207,7 @@ class SequentialTextChecker:
         """Return the line found last, and those around it."""
         text = "".join(self._pieces)
         at = sum(map(len, self._pieces[: self._piece])) + self._at
-        line = text.count("\n", 0, at)
+        line = text.count("\n", 0, at + 1)  # behind a line that was found as a whole the next one counts
         return "\n".join(text.splitlines()[max(0, line - AROUND) : line + AROUND + 1])
 
 
