@@ -36,10 +36,11 @@ if TYPE_CHECKING:
 
 ExecutorT = TypeVar("ExecutorT", bound="Executor")
 
-_RUNS_ITSELF = (
+RUNS_ITSELF = (
     "node {} is an AsyncNode, which asyncio runs and no executor: write `async with node:` or `await node.run()` in a"
     " coroutine, and start that by asyncio.run(...)"
 )
+"""Text of the error for whoever spins an AsyncNode."""
 
 CUSTOM_SLICE = 0.1
 """Longest `spin_once`, in seconds, of an executor of the user's own that spins until a future is done."""
@@ -101,7 +102,7 @@ class Executor:
         Raises TypeError for an AsyncNode, which runs on asyncio's event loop.
         """
         if node._runs_itself_:
-            raise TypeError(_RUNS_ITSELF.format(node.get_fully_qualified_name()))
+            raise TypeError(RUNS_ITSELF.format(node.get_fully_qualified_name()))
         before = node._attached_to_
         if before is not None and before is not self:
             before.remove_node(node)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from robolink.context import Context
-from robolink.executors import Executor, SingleThreadedExecutor
-from robolink.node import Node
+from robolink.executors import RUNS_ITSELF, Executor, SingleThreadedExecutor
+from robolink.node import BaseNode, Node
 from robolink.parameter import Parameter
 from robolink.qos import QoSProfile, qos_profile_rosout_default
 from robolink.running.defaults import get_defaults
@@ -276,6 +276,8 @@ def _with_node(node: Node, executor: Executor | None, act: Callable[[Executor], 
 
 
 def _check_node(given: object) -> None:
+    if getattr(given, "_runs_itself_", False) and isinstance(given, BaseNode):
+        raise TypeError(RUNS_ITSELF.format(given.get_fully_qualified_name()))
     if not isinstance(given, Node):
         hint = f": call it, {given.__name__}()" if isinstance(given, type) else ""
         raise TypeError(f"expected a Node to spin, got {given!r:.80}{hint}")

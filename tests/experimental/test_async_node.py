@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+import robolink
 from robolink import Context
 from robolink.exceptions import InvalidHandle
 from robolink.executors import SingleThreadedExecutor
@@ -151,8 +152,10 @@ def test_a_node_runs_once(context: Context) -> None:
 
 def test_no_executor_spins_it(context: Context) -> None:
     executor: Any = SingleThreadedExecutor(context=context)
-    with pytest.raises(TypeError, match=r"node /node is an AsyncNode, which asyncio runs .*async with node"):
-        executor.add_node(AsyncNode("node", context=context))
+    node: Any = AsyncNode("node", context=context)
+    for spin in (executor.add_node, robolink.spin, robolink.spin_once):
+        with pytest.raises(TypeError, match=r"node /node is an AsyncNode, which asyncio runs .*async with node"):
+            spin(node)
 
 
 def test_its_end_cancels_callbacks_and_calls_under_way(context: Context) -> None:
