@@ -21,8 +21,9 @@ from robolink.launch.ros.launch.bases import LaunchContext, LaunchError, Place, 
 from robolink.launch.ros.launch.utilities import boolean, performed
 from robolink.launch.ros.launch_ros.components import ComposableNodeContainer, LoadComposableNodes
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
-from robolink.launch.ros.launch_ros.node import Node
-from robolink.launch.ros.launch_ros.settings import NAMESPACE, REMAPS, joined
+from robolink.launch.ros.launch_ros.node import Node, note_name
+from robolink.launch.ros.launch_ros.settings import NAMESPACE, REMAPS
+from robolink.launch.ros.launch_ros.utilities import make_namespace_absolute, prefix_namespace
 from robolink.launch.ros.programs import Program, component_of, parameters_of, program_of, texts_of
 from robolink.supervisor.policy import NO_LIMIT
 from robolink.system.processes import SHELL, own_command, split_words
@@ -56,6 +57,8 @@ class Requested(NamedTuple):
     parameters: Iterable[Any]
     remappings: Iterable[Any]
     place: Place
+    is_full: bool
+    """True if the launch file gives it a name and a namespace."""
 
     @property
     def full_name(self) -> str:
@@ -103,7 +106,8 @@ class EntryMaker:
             return None
         name = "" if action.requested_name is None else performed(context, action.requested_name)
         naming = Naming(name, namespace_of(action.requested_namespace, context))
-        requested = Requested(program, executable, naming, action.parameters, action.remappings, action.place)
+        is_full = action.is_node_name_fully_specified()
+        requested = Requested(program, executable, naming, action.parameters, action.remappings, action.place, is_full)
         action.expanded_name = requested.full_name
         action.process_description.settle([executable, *arguments], context)
         action.describe_process()
@@ -139,8 +143,9 @@ class EntryMaker:
         def say(text: str) -> None:
             self.say(f"{placed(place)}{text}")
 
-        is_full = bool(name and namespace)
-        own = parameters_of(requested.parameters, requested.full_name, bool(name), context, say, is_full=is_full)
+        own = parameters_of(
+            requested.parameters, requested.full_name, bool(name), context, say, is_full=requested.is_full
+        )
         of_ros, *others = words
         extra = [*own.words, *of_ros]
         node = NodeToStart(
@@ -240,11 +245,12 @@ def namespace_of(given: Any, context: LaunchContext) -> str:
 
     Raises LaunchError for one that is invalid.
     """
-    around = str(context.launch_configurations.get(NAMESPACE, ""))
-    whole = joined(around, "" if given is None else performed(context, given))
-    whole = whole if whole.startswith("/") or not whole else f"/{whole}"
-    if whole:
-        _check(validate_namespace, whole)
+    around = context.launch_configurations.get(NAMESPACE)
+    whole = make_namespace_absolute(prefix_namespace(around, None if given is None else performed(context, given)))
+    if whole in (None, "/"):
+        return ""
+    assert whole is not None
+    _check(validate_namespace, whole)
     return whole
 
 
@@ -396,7 +402,7 @@ def components(
     """
     absent: dict[str, list[str]] = {}
     for each in described:
-        if each.condition is not None and not each.condition.evaluate(context):
+        if (condition := each.condition()) is not None and not condition.evaluate(context):
             continue
         package, plugin = performed(context, each.package), performed(context, each.node_plugin)
         program = component_of(package, plugin, maker.home)
@@ -404,7 +410,10 @@ def components(
             absent.setdefault(program.absent, []).append(plugin)
             continue
         naming = Naming(_text(each.node_name, context), namespace_of(each.node_namespace, context))
-        requested = Requested(program, plugin, naming, each.parameters or (), each.remappings or (), each.place)
+        requested = Requested(
+            program, plugin, naming, each.parameters or (), each.remappings or (), each.place, all(naming)
+        )
+        note_name(context, requested.full_name)
         yield maker.shared(requested, action, process, context)
     for reason, plugins in absent.items():
         maker.say(f"{placed(action.place)}left out: {_listed(plugins)} of container /{process}: {reason}")

@@ -16,8 +16,9 @@ from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, NotFoundError, closest, nearest
 from robolink.launch.ros.launch.bases import LaunchContext, LaunchError
 from robolink.launch.ros.launch.utilities import performed, read_otherwise
-from robolink.launch.ros.launch_ros.descriptions import Parameter, ParameterFile, evaluated
-from robolink.launch.ros.launch_ros.settings import PARAMETERS
+from robolink.launch.ros.launch_ros.parameter_descriptions import Parameter
+from robolink.launch.ros.launch_ros.parameters import values_for_node
+from robolink.launch.ros.launch_ros.settings import PARAMETERS, as_set
 from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.system.terminal import shown
 from robolink.workspace import (
@@ -148,7 +149,7 @@ def parameters_of(
     count in the order in which they first come, and within each the later value wins.
 
     Args:
-        parameters: What the action has: mappings, files, `Parameter`s.
+        parameters: What the action has, normalized: mappings, files, `Parameter`s.
         full_name: Full name of the node.
         is_named: True if the launch file names it, so that the sections of files can be chosen here.
         context: The context with whose values they are performed.
@@ -162,21 +163,20 @@ def parameters_of(
     gathered = _Gathered(full_name, is_named, say)
     for each in context.launch_configurations.get(PARAMETERS, []):
         if isinstance(each, tuple):
-            gathered.add([Override(_EVERY, *each)])
+            gathered.add([Override(_EVERY, each[0], as_set(*each))])
         else:
             gathered.add_file(Path(each), None)
     wide = set(gathered.values())
     own = full_name if is_named and is_full else _EVERY
     for each in parameters:
         if isinstance(each, Mapping):
-            found = [Override(own, name, value) for name, value in evaluated(each, context)]
+            found = [Override(own, name, value) for name, value in values_for_node(context, each)]
             gathered.add(found, warn=True)
         elif isinstance(each, Parameter):
-            found = [Override(_EVERY, *each.evaluate(context))]
+            found = [Override(_EVERY, *each.for_node(context))]
             gathered.add(found, warn=True)
         else:
-            file = each if isinstance(each, ParameterFile) else ParameterFile(each)
-            found = gathered.add_file(file.evaluate(context), file.substituted(context))
+            found = gathered.add_file(each.path(context), each.substituted(context))
             wide.update(each.name for each in found if "*" in each.pattern)
             found = [each for each in found if "*" not in each.pattern]
         wide.difference_update(each.name for each in found)

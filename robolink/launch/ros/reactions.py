@@ -282,7 +282,7 @@ class Reactions(Generic[T]):
                 with self._visit.placing(action):
                     starts_itself = is_true(self._visit.context, action.autostart)
                 if starts_itself:
-                    self._visit.run(transitions(action.expanded_name, [1, 3]))
+                    self._visit.run(transitions([action.expanded_name], [1, 3], self._visit.context))
 
     def _change(self, event: ChangeState) -> None:
         nodes = [each for each in self._actions.values() if isinstance(each, LifecycleNode)]

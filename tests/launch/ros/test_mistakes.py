@@ -107,7 +107,7 @@ ACTIONS = [
     ("ExecuteProcess(cmd='ls -l')", "cmd is a list of words, such as ['ls', '-l'], got the text 'ls -l'"),
     ("Node(package='bot', executable='talker', name='a b')", "'a b' must not contain characters other than a-z"),
     ("Node(package='bot', executable='talker', namespace='a b')", "'/a b' must not contain characters other than"),
-    ("Node(package='bot', executable='talker', parameters={})", "Node's parameters are a list, as in [{{}}]"),
+    ("Node(package='bot', executable='talker', parameters={})", "parameters are a list, as in [{{}}]"),
     ("Node(package='bot', executable='talker', parameters=[{'x': None}])", "parameter 'x': a parameter is a plain"),
     ("Node(package='bot', executable='talker', parameters=[{'x': 2**70}])", "parameter 'x': 1180591620717411303424 is"),
     ("Node(package='bot', executable='talker', remappings=['x'])", "a remapping is a pair of two names, got 'x'"),

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-from robolink.launch.ros.launch_ros import actions, descriptions, events, substitutions
-from robolink.launch.ros.launch_ros import descriptions as parameter_descriptions
+from robolink.launch.ros.launch_ros import (
+    actions,
+    descriptions,
+    events,
+    parameter_descriptions,
+    substitutions,
+    utilities,
+)
 from robolink.launch.ros.launch_ros import events as event_handlers
 
 __all__ = [
@@ -13,4 +19,5 @@ __all__ = [
     "events",
     "parameter_descriptions",
     "substitutions",
+    "utilities",
 ]

@@ -56,7 +56,7 @@ class StateTransition(Event):
 def matches_node_name(node_name: str) -> Callable[[Any], bool]:
     """Return a function that is true for the action whose node has the full name `node_name`."""
     expected = full_name(node_name)
-    return lambda action: getattr(action, "expanded_name", None) == expected
+    return lambda action: getattr(action, "node_name", None) == expected
 
 
 def full_name(node_name: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from robolink.launch.ros.launch.actions import EmitEvent, RegisterEventHandler
+from robolink.launch.ros.launch.actions import EmitEvent, OpaqueFunction, RegisterEventHandler
 from robolink.launch.ros.launch.bases import (
     Action,
     LaunchArgumentError,
@@ -51,6 +51,10 @@ class LifecycleNode(Node):
         self.autostart = autostart
 
 
+class TransitionError(LaunchError, ValueError):
+    """A transition is requested that there is not, or none at all."""
+
+
 class LifecycleTransition(Action):
     """Ask nodes with a lifecycle for transitions.
 
@@ -70,23 +74,50 @@ class LifecycleTransition(Action):
         super().__init__(**kwargs)
         self.lifecycle_node_names, self.transition_ids = list(lifecycle_node_names), list(transition_ids)
         if not self.lifecycle_node_names or not self.transition_ids:
-            raise LaunchArgumentError("LifecycleTransition needs names of nodes, and transitions")
+            raise TransitionError("LifecycleTransition needs names of nodes, and transitions")
 
     def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Return the actions that ask each node for the first transition, and for each further one once it is there."""
         ids = [transition_of(each, context) for each in self.transition_ids]
         names = [full_name(performed(context, each)) for each in self.lifecycle_node_names]
-        return [each for name in names for each in transitions(name, ids)]
+        return transitions(names, ids, context)
 
 
-def transitions(name: str, ids: Sequence[int]) -> list[LaunchDescriptionEntity]:
-    """Return the actions that bring the node `name` through the transitions `ids`, one after the other."""
-    asks = [EmitEvent(event=_request_of(name, each)) for each in ids]
-    handlers: list[LaunchDescriptionEntity] = [
-        RegisterEventHandler(OnStateTransition(matcher=_reaches(name, before), entities=[ask], handle_once=True))
-        for before, ask in zip(ids, asks[1:], strict=False)
-    ]
-    return [*handlers, asks[0]]
+def transitions(names: Iterable[str], ids: Sequence[int], context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    """Return the actions that bring nodes through transitions, one after the other.
+
+    A node that comes to the state `errorprocessing` is asked for no further one.
+
+    Args:
+        names: Full names of the nodes.
+        ids: Numbers of the transitions.
+        context: The context, which hears of such errors from here on.
+    """
+    registered: list[LaunchDescriptionEntity] = []
+    first: list[LaunchDescriptionEntity] = []
+    for name in names:
+        ask, *further = [EmitEvent(event=_request_of(name, each)) for each in ids]
+        *handlers, of_error = _handlers(name, ids, further)
+        context.register_event_handler(of_error)
+        registered += map(RegisterEventHandler, handlers)
+        first.append(ask)
+    return [*registered, *first]
+
+
+def _handlers(name: str, ids: Sequence[int], further: Sequence[EmitEvent]) -> list[OnStateTransition]:
+    """Return the handlers that ask a node for each further transition; the last ones remove all of them."""
+    handlers: list[OnStateTransition] = []
+
+    def remove(context: LaunchContext) -> None:
+        for each in [each for each in handlers if each in context.handlers]:
+            context.unregister_event_handler(each)
+
+    end = OpaqueFunction(function=remove)
+    for number, action in zip(ids, [*further, end], strict=True):
+        reaches = _reaches(name, *_WAYS[number])
+        handlers.append(OnStateTransition(matcher=reaches, entities=[action], handle_once=True))
+    handlers.append(OnStateTransition(matcher=_reaches(name, "", "errorprocessing"), entities=[end], handle_once=True))
+    return handlers
 
 
 def _request_of(name: str, transition_id: int) -> ChangeState:
@@ -98,21 +129,34 @@ def _request_of(name: str, transition_id: int) -> ChangeState:
 def transition_of(given: Any, context: LaunchContext) -> int:
     """Return the number of a transition, which may be `given` as one, as its text or its label.
 
-    Substitutions are performed with the values of `context`. Raises LaunchError for one that there is not.
+    Substitutions are performed with the values of `context`. Raises TransitionError for one that there is not.
     """
     text = str(given) if isinstance(given, int) else performed(context, given).strip()
     number = _BY_LABEL.get(text, text)
-    if str(number) not in map(str, _GOALS):
-        raise LaunchError(f"a transition is one of {', '.join(_BY_LABEL)}, or its number, got '{shown(text)}'")
+    if str(number) not in map(str, _WAYS):
+        raise TransitionError(f"a transition is one of {', '.join(_BY_LABEL)}, or its number, got '{shown(text)}'")
     return int(number)
 
 
-def _reaches(name: str, transition_id: int) -> Callable[[Any], bool]:
-    """Return a function that is true for the event that a node has reached the goal of a transition."""
-    goal, is_node = _GOALS[transition_id], matches_node_name(name)
-    return lambda event: isinstance(event, StateTransition) and is_node(event.action) and event.goal_state == goal
+def _reaches(name: str, start: str, goal: str) -> Callable[[Any], bool]:
+    """Return a function that is true for the event that a node came from the state `start`, '' for any, to `goal`."""
+    is_node = matches_node_name(name)
+
+    def matches(event: Any) -> bool:
+        is_meant = isinstance(event, StateTransition) and is_node(event.action)
+        return is_meant and event.goal_state == goal and event.start_state in (start or event.start_state,)
+
+    return matches
 
 
 _BY_LABEL = {"configure": 1, "cleanup": 2, "activate": 3, "deactivate": 4, "shutdown": 5}
-_GOALS = {1: "inactive", 2: "unconfigured", 3: "active", 4: "inactive", 5: "finalized", 6: "finalized", 7: "finalized"}
-"""State that each transition leads to, by its number."""
+_WAYS = {
+    1: ("configuring", "inactive"),
+    2: ("cleaningup", "unconfigured"),
+    3: ("activating", "active"),
+    4: ("deactivating", "inactive"),
+    5: ("shuttingdown", "finalized"),
+    6: ("shuttingdown", "finalized"),
+    7: ("shuttingdown", "finalized"),
+}
+"""States through which and to which each transition leads, by its number."""

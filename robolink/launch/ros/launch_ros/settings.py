@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from robolink.arguments.parameter_file import parse_parameter_value
-from robolink.exceptions import DocumentError
-from robolink.launch.ros.launch.actions import SetEnvironmentVariable
-from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType
+from robolink.exceptions import DocumentError, NameValidationException
+from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
+from robolink.launch.ros.launch.substitutions import SubstitutionFailure
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from robolink.launch.ros.launch_ros.descriptions import plain
+from robolink.launch.ros.launch_ros.parameters import evaluate_parameter_dict, normalize_parameter_dict
+from robolink.launch.ros.launch_ros.utilities import make_namespace_absolute, prefix_namespace
 from robolink.system.terminal import shown
+from robolink.validate_namespace import validate_namespace
 
 NAMESPACE, REMAPS, PARAMETERS = "ros_namespace", "ros_remaps", "global_params"
 """Launch configurations in which they are stored, as in ROS 2."""
-
-
-def joined(around: str, namespace: str) -> str:
-    """Return a namespace within the one around it; one with a slash in front stays as it is.
-
-    Args:
-        around: The namespace around, '' or with a slash in front.
-        namespace: The namespace, '' for none.
-
-    >>> joined("/fleet", "ada"), joined("/fleet", "/ada"), joined("", "")
-    ('/fleet/ada', '/ada', '')
-    """
-    is_whole = not namespace or namespace.startswith("/")
-    whole = namespace or around if is_whole else f"{around.rstrip('/')}/{namespace}"
-    return whole.rstrip("/")
+LOGS = "ROS_LOG_DIR"
+"""Environment variable with the folder of the logs."""
 
 
 class PushROSNamespace(Action):
@@ -44,9 +34,16 @@ class PushROSNamespace(Action):
         self.namespace = normalize_to_list_of_substitutions(namespace)
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it in `context`."""
-        around = str(context.launch_configurations.get(NAMESPACE, ""))
-        context.launch_configurations[NAMESPACE] = joined(around, perform_substitutions(context, self.namespace))
+        """Set it in `context`; raises SubstitutionFailure for an invalid one."""
+        around = context.launch_configurations.get(NAMESPACE)
+        pushed = perform_substitutions(context, self.namespace)
+        whole = make_namespace_absolute(prefix_namespace(around, pushed)) or "/"
+        try:
+            validate_namespace(whole)
+        except NameValidationException as error:
+            within = f" within '{shown(around)}'" if around else ""
+            raise SubstitutionFailure(f"namespace '{shown(pushed)}'{within}: {error.error_msg}") from None
+        context.launch_configurations[NAMESPACE] = whole
 
 
 PushRosNamespace = PushROSNamespace
@@ -84,19 +81,42 @@ class SetParameter(Action):
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self.name, self.value = normalize_to_list_of_substitutions(name), value
+        self._normal = normalize_parameter_dict({tuple(normalize_to_list_of_substitutions(name)): value})
+
+    @property
+    def name(self) -> tuple[Substitution, ...]:
+        """The name, as substitutions that are one text."""
+        return next(iter(self._normal))
+
+    @property
+    def value(self) -> Any:
+        """The value, as `normalize_parameters` has it."""
+        return self._normal[self.name]
 
     def execute(self, context: LaunchContext) -> None:
-        """Set it in `context`."""
-        name, value = perform_substitutions(context, self.name), plain(self.value, context)
-        if isinstance(value, str):
-            value = _read(name, value)
-        elif isinstance(value, list):
-            context.said.append(
-                f"SetParameter '{shown(name)}': a list arrives in ROS 2 as the text \"{shown(str(tuple(value)))}\": "
-                "give it to the nodes as one of their parameters"
-            )
-        context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), (name, value)]
+        """Set it in `context`. Raises LaunchError for a value that cannot be set so."""
+        found = evaluate_parameter_dict(context, self._normal)
+        for name, value in found.items():
+            as_set(name, value)
+            if isinstance(value, tuple):
+                context.said.append(
+                    f"SetParameter '{shown(name)}': a list arrives in ROS 2 as the text \"{shown(str(value))}\": "
+                    "give it to the nodes as one of their parameters"
+                )
+        context.launch_configurations[PARAMETERS] = [
+            *context.launch_configurations.get(PARAMETERS, []),
+            *found.items(),
+        ]
+
+
+def as_set(name: str, value: Any) -> Any:
+    """Return the value of the parameter `name` that a node gets for the `value` of SetParameter, a list for a tuple.
+
+    Raises LaunchError for a text that rcl does not read behind `-p`.
+    """
+    if isinstance(value, tuple):
+        return list(value)
+    return _read(name, str(value)) if isinstance(value, (str, bytes)) else value
 
 
 def _read(name: str, text: str) -> Any:
@@ -144,16 +164,24 @@ class SetParametersFromFile(Action):
         context.launch_configurations[PARAMETERS] = [*context.launch_configurations.get(PARAMETERS, []), path]
 
 
-class SetROSLogDir(SetEnvironmentVariable):
+class SetROSLogDir(Action):
     """Set the folder of the logs of the nodes behind this.
 
     Args:
-        new_log_dir: The folder.
+        new_log_dir: The folder, within the one before.
         **kwargs: `condition`.
     """
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **kwargs: Any) -> None:
-        super().__init__("ROS_LOG_DIR", new_log_dir, **kwargs)
+        super().__init__(**kwargs)
+        self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Set it in `context`."""
+        from robolink.logging import get_logging_directory
+
+        before = context.environment.get(LOGS) or str(get_logging_directory())
+        context.environment[LOGS] = str(Path(before) / perform_substitutions(context, self.log_dir))
 
 
 SetRosLogDir = SetROSLogDir

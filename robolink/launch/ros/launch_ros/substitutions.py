@@ -94,7 +94,7 @@ class ExecutableInPackage(Substitution):
 
 
 class Parameter(Substitution):
-    """Value of a parameter that SetParameter has set.
+    """Value of a parameter that SetParameter has set; the first one counts, as in ROS 2.
 
     Args:
         name: Name of the parameter.
@@ -108,8 +108,7 @@ class Parameter(Substitution):
         """Return the value; raises SubstitutionFailure if it is not set."""
         name = performed(context, self.name)
         given = context.launch_configurations.get("global_params", [])
-        known: dict[str, Any] = dict(each for each in given if isinstance(each, tuple))
-        found = known.get(name, self.default)
+        found = next((each[1] for each in given if isinstance(each, tuple) and each[0] == name), self.default)
         if found is None:
             raise SubstitutionFailure(f"no SetParameter has set '{name}'")
         return performed(context, found) if is_substitution(found) else str(found)
