@@ -1,7 +1,7 @@
 """Parser of ROS 2's parameters in YAML: single values, and files with sections for nodes.
 
 The rules are rcl's where they differ from plain YAML: `yes` and `on` are booleans, `010` is 8, dates and `null`
-are strings, and sections may repeat, the last value winning.
+are strings, and sections may repeat, the last value winning. A tag decides, as in Lyrical: `!!float 10` is 10.0.
 """
 
 from __future__ import annotations
@@ -146,16 +146,31 @@ class _Reader:
         self.check_alias(node)
         self.check_text(node)
         text: str = node.value
-        if node.style or self.is_tagged_string(node):
+        tag = self.tag(node)
+        if tag in _TAGGED:
+            return self.tagged(node, tag, what)
+        if node.style or tag == "str":
             return text
         if not text:
             raise self.error(node, f"{what}no value (write '' for an empty string)")
         return parse_scalar(text)
 
-    def is_tagged_string(self, node: yaml.ScalarNode) -> bool:
-        """Return whether a plain scalar carries the tag `!!str`; without one its tag says nothing here."""
-        is_text = node.tag == "tag:yaml.org,2002:str"
-        return is_text and _TAG.match(self.text, node.start_mark.index) is not None
+    def tag(self, node: yaml.ScalarNode) -> str:
+        """Return the name behind `!!` that a scalar carries in the text; '' for none, and for another kind of tag."""
+        known = node.tag.startswith(_YAML_TAG) and _TAG.match(self.text, node.start_mark.index) is not None
+        return node.tag.removeprefix(_YAML_TAG) if known else ""
+
+    def tagged(self, node: yaml.ScalarNode, tag: str, what: str) -> Scalar:
+        """Return the value of a scalar whose tag decides, as in Lyrical's rcl (rcl#1275).
+
+        Kilted's reads a tag other than `!!str` as if it were not there.
+        """
+        value = parse_scalar(node.value)
+        if tag == "float" and type(value) is int:
+            value = float(value)
+        if type(value) is not _TAGGED[tag]:
+            raise self.error(node, f"{what}!!{tag} stands before '{node.value}', which is not one")
+        return value
 
     def check_alias(self, node: yaml.Node) -> None:
         """Refuse aliases, as rcl does: a node that is met twice stands for one."""
@@ -186,6 +201,9 @@ def _mixed(items: list[Scalar], text: str) -> str:
 
 
 _TAG = re.compile(r"(?:&\S*\s+)?!")
+_YAML_TAG = "tag:yaml.org,2002:"
+_TAGGED = {"bool": bool, "int": int, "float": float}
+"""Types by the tags that decide."""
 
 
 _TRUE = re.compile(r"[Yy]|yes|Yes|YES|true|True|TRUE|on|On|ON")

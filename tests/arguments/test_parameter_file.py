@@ -85,6 +85,15 @@ def test_not_a_number_is_read(text: str) -> None:
         ("''", ""),
         ("!!str 1234", "1234"),
         ("!!str yes", "yes"),
+        ("!!float 10", 10.0),
+        ("!!float '10'", 10.0),
+        ("!!float nan # a comment", math.nan),
+        ("!<tag:yaml.org,2002:float> 0x10", 16.0),
+        ("[!!float 1, 2.5]", [1.0, 2.5]),
+        ("!!int 010", 8),
+        ('!!bool "on"', True),
+        ("!!timestamp 2020-01-01", "2020-01-01"),
+        ("!own 5", 5),
         ("yes", True),
         ("word", "word"),
         ("[]", []),
@@ -97,7 +106,16 @@ def test_not_a_number_is_read(text: str) -> None:
 )
 def test_a_value_is_read(text: str, value: object) -> None:
     found = parse_parameter_value(text)
-    assert (found, type(found)) == (value, type(value))
+    assert (repr(found), type(found)) == (repr(value), type(value))
+
+
+@pytest.mark.parametrize(
+    ("text", "what"), [("!!int 1.5", "1.5"), ("!!float abc", "abc"), ("!!bool 1", "1"), ("!!float", "")]
+)
+def test_a_tag_is_held_to(text: str, what: str) -> None:
+    tag = text.split()[0]
+    with pytest.raises(ParameterFileError, match=rf"^<value>:1:1: {tag} stands before '{what}', which is not one$"):
+        parse_parameter_value(text)
 
 
 @given(
