@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -14,10 +15,12 @@ from robolink.exceptions import DocumentError
 from robolink.launch.ros.launch.bases import Condition, LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
 from robolink.launch.ros.launch.substitutions import LaunchConfiguration
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, performed
+from robolink.system.terminal import shown
 
 __all__ = [
     "HasNodeParams",
     "LaunchConfigAsBool",
+    "ParseMultiRobotPose",
     "ReplaceString",
     "RewrittenYaml",
 ]
@@ -144,6 +147,51 @@ class LaunchConfigAsBool(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the value with the configurations of `context`; raises LaunchError if there is none of this name."""
         return str(performed(context, self.configuration).strip().lower() in YES)
+
+
+class ParseMultiRobotPose(Substitution):
+    """Poses of several robots by their names, of a text ``ada={x: 1.0, yaw: 1.57}; bob={x: 2.0}``.
+
+    Args:
+        robots_argument: The text, as a substitution; or, as in Jazzy, the name of the launch argument that has it on
+            the command line.
+    """
+
+    def __init__(self, robots_argument: str | Substitution) -> None:
+        self.robots_argument = robots_argument
+
+    def perform(self, context: LaunchContext) -> Any:
+        """Return the poses with the values of `context`; what a pose leaves out is 0. Raises LaunchError."""
+        given = self.robots_argument
+        return _poses(performed(context, LaunchConfiguration(given, default="") if isinstance(given, str) else given))
+
+    def value(self) -> dict[str, Any]:
+        """Return the poses of the launch argument on the command line, before anything is executed, as in Jazzy.
+
+        Raises LaunchError.
+        """
+        if not isinstance(self.robots_argument, str):
+            raise LaunchError("value() needs the name of a launch argument: perform(context) reads a substitution")
+        start = f"{self.robots_argument}:="
+        return _poses(next((each.removeprefix(start) for each in sys.argv if each.startswith(start)), ""))
+
+
+_POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+def _poses(text: str) -> dict[str, Any]:
+    """Return poses by name. Raises LaunchError for a text that has none."""
+    found = {}
+    for part in filter(str.strip, text.split(";")):
+        name, equals, pose = part.partition("=")
+        try:
+            values = parse(pose, name="") if equals else None
+        except DocumentError:
+            values = None
+        if not isinstance(values, dict):
+            raise LaunchError(f"a robot is NAME={{x: 1.0, y: 1.0, yaw: 0.0}}, got '{shown(part.strip(), 60)}'")
+        found[name.strip()] = {**dict.fromkeys(_POSE, 0.0), **values}
+    return found
 
 
 def _text(path: str) -> str:

@@ -14,7 +14,13 @@ from robolink.launch.ros.launch import LaunchContext
 from robolink.launch.ros.launch.bases import LaunchError
 from robolink.launch.ros.launch.conditions import IfCondition
 from robolink.launch.ros.launch.substitutions import LaunchConfiguration
-from robolink.launch.ros.nav2_common import HasNodeParams, LaunchConfigAsBool, ReplaceString, RewrittenYaml
+from robolink.launch.ros.nav2_common import (
+    HasNodeParams,
+    LaunchConfigAsBool,
+    ParseMultiRobotPose,
+    ReplaceString,
+    RewrittenYaml,
+)
 
 SOURCE = """
 amcl:
@@ -154,3 +160,17 @@ def test_questions(source: Path, tmp_path: Path) -> None:
     assert answers == {"yes": "True", "On": "True", "1": "True", "no": "False", "x": "False"}
     with pytest.raises(LaunchError, match="slam"):
         LaunchConfigAsBool("slam").perform(context())
+
+
+def test_poses_of_several_robots(monkeypatch: pytest.MonkeyPatch) -> None:
+    rest = {"z": 0.0, "roll": 0.0, "pitch": 0.0}
+    expected = {"ada": {"x": 1.0, "y": 0.0, "yaw": 1.57, **rest}, "bob": {"x": 0.0, "y": 2, "yaw": 0.0, **rest}}
+    text = "ada={x: 1.0, yaw: 1.57}; bob = {y: 2};"
+    made = context(robots=text)
+    assert ParseMultiRobotPose(LaunchConfiguration("robots")).perform(made) == expected
+    assert ParseMultiRobotPose("robots").perform(made) == expected
+    assert ParseMultiRobotPose("others").perform(made) == {}
+    monkeypatch.setattr("sys.argv", ["robolink", "launch", f"robots:={text}"])
+    assert ParseMultiRobotPose("robots").value() == expected
+    with pytest.raises(LaunchError, match=r"a robot is NAME=\{x: 1.0, y: 1.0, yaw: 0.0\}, got 'ada=1'"):
+        ParseMultiRobotPose(LaunchConfiguration("robots")).perform(context(robots="ada=1"))
