@@ -213,18 +213,29 @@ class Listener:
 
     def start(self) -> None:
         """Listen to what is there, and to what comes unless discovery is off."""
-        graph = self._node.context.graph
         self._hear_static()
-        graph.endpoints(EndpointKind.PUBLISHER)  # waits until what was there before is known
+        self._node.context.graph.endpoints(EndpointKind.PUBLISHER)  # waits until what was there before is known
+        self.discover()
+        if self._settings.no_discovery:
+            self.stop_discovery()
+
+    @property
+    def discovers(self) -> bool:
+        """True while it listens to topics that come, too."""
+        return bool(self._following)
+
+    def discover(self) -> None:
+        """Listen to what is there, and to what comes; nothing if it does already."""
+        if self._following or self._closed:
+            return
+        graph = self._node.context.graph
         if self._settings.include_unpublished or self._settings.ignore_leaf_topics:
             self._following.append(graph.follow(EVERY, EndpointKind.SUBSCRIPTION, self._on_subscription))
         self._following.append(graph.follow(EVERY, EndpointKind.PUBLISHER, self._on_publisher))
-        if self._settings.no_discovery:
-            self._stop_following()
 
     def close(self) -> None:
         """End all subscriptions. Safe to call twice."""
-        self._stop_following()
+        self.stop_discovery()
         with self._lock:
             self._closed = True
             handles = [each for handles in self._handles.values() for each in handles]
@@ -232,7 +243,8 @@ class Listener:
         for each in handles:
             each.close()
 
-    def _stop_following(self) -> None:
+    def stop_discovery(self) -> None:
+        """Listen to no topics but those that it knows. Safe to call twice."""
         for each in self._following:
             each.close()
         self._following.clear()

@@ -181,9 +181,34 @@ class Recording:
         return self._writing is not None
 
     @property
+    def is_running(self) -> bool:
+        """True from the start until `stop`, or until the bag can no longer be written."""
+        return self._writing is not None and not self._took and not self._error
+
+    @property
+    def is_discovering(self) -> bool:
+        """True while topics that appear are recorded, too."""
+        return self.is_running and (self._listener.discovers or self._is_before_clock)
+
+    @property
     def is_paused(self) -> bool:
         """True while messages are let pass."""
         return self._paused
+
+    def start_discovery(self) -> None:
+        """Record topics that appear from now on, too. Raises RecordingError if it does, or nothing is recorded."""
+        self._running()
+        if self.is_discovering:
+            raise RecordingError("Discovery is already running.")
+        self._listener.discover()
+
+    def stop_discovery(self) -> None:
+        """Record no topics but those that are there. Raises RecordingError if it does, or while it waits for /clock."""
+        if self._is_before_clock:
+            raise RecordingError("Discovery begins with the first message on /clock.")
+        if not self.is_discovering:
+            raise RecordingError("Discovery is not running.")
+        self._listener.stop_discovery()
 
     def pause(self) -> None:
         """Let messages pass from now on."""
@@ -237,6 +262,10 @@ class Recording:
             self._cache.held,
             self._error,
         )
+
+    @property
+    def _is_before_clock(self) -> bool:
+        return self.settings.use_sim_time and self._collector.sim_time is None
 
     def _running(self) -> Writing:
         if self._writing is None or self._took or self._error:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.bag.background_spin import BackgroundSpin
 from robolink.bag.information import size_text
-from robolink.bag.recording import Figures, RecordSettings
+from robolink.bag.recording import Figures, Recording, RecordSettings
 from robolink.bag.recording.services import ServedRecording
 from robolink.bag.selection import Selection
 from robolink.cli.bag.progress_line import ProgressLine
@@ -105,7 +105,9 @@ class Request(NamedTuple):
 
 
 def run(path: str | Path, selection: Selection, settings: RecordSettings, request: Request) -> int:
-    """Record until Ctrl-C, SIGTERM, the service `~/stop`, or until the bag can no longer be written; return the code.
+    """Record until Ctrl-C, SIGTERM, or until the bag can no longer be written; return the code.
+
+    After the service `~/stop` it waits for `~/record`.
 
     Raises BagError (a ValueError) if the bag cannot be made, SelectionError if nothing is selected.
     """
@@ -131,7 +133,8 @@ class _Command:
         self._logger = self._node.get_logger()
         self._logger.set_level(LoggingSeverity[request.log_level.upper()])
         self._served = ServedRecording(self._node, path, selection, settings)
-        self._recording = self._served.recording
+        self._told: Recording | None = None
+        """The last recording of which the summary was printed."""
 
     def run(self, line: ProgressLine) -> None:
         """Record until something ends it."""
@@ -139,30 +142,43 @@ class _Command:
         with BackgroundSpin(self._node), steered as read:
             self._served.start()
             self._greet()
-            before, shown_at = self._recording.figures(), 0.0
+            shown, before, shown_at = self._served.recording, self._served.recording.figures(), 0.0
             while not self._is_over():
                 self._obey(read(LOOK))
-                if clocks.monotonic() - shown_at >= SHOW:
-                    shown_at, now = clocks.monotonic(), self._recording.figures()
-                    line.show(progress(now, before))
-                    before = now
+                recording = self._served.recording
+                if not recording.is_running:
+                    line.clear()
+                    if not self._is_over():  # else the bag is still to be closed
+                        self._tell(recording)
+                elif clocks.monotonic() - shown_at >= SHOW:
+                    shown_at, now = clocks.monotonic(), recording.figures()
+                    line.show(progress(now, before if recording is shown else now))
+                    shown, before = recording, now
 
     def end(self, line: ProgressLine) -> None:
         """Close the bag."""
         line.clear()
-        if self._recording.has_started:
-            self._recording.stop()
+        recording = self._served.recording
+        if recording.has_started and recording is not self._told:
+            recording.stop()
             self._logger.info("Recording stopped")
 
     def reported(self) -> int:
         """Print how it went, and return the exit code."""
-        figures = self._recording.figures()
+        self._tell(self._served.recording)
+        error = self._served.recording.figures().error
+        return complain(f"the recording has ended: {error}") if error else 0
+
+    def _tell(self, recording: Recording) -> None:
+        """Print, once, how a recording went that has ended."""
+        if recording is self._told:
+            return
+        self._told, figures = recording, recording.figures()
         if self._request.json:
             say_json(as_data(figures))
         else:
             for each in summary(figures):
                 say(each)
-        return complain(f"the recording has ended: {figures.error}") if figures.error else 0
 
     def _is_over(self) -> bool:
         return not self._context.ok() or self._served.is_over
@@ -179,9 +195,9 @@ class _Command:
 
     def _obey(self, key: str) -> None:
         if key == " ":
-            self._recording.toggle_paused()
-        elif key == "s" and self._settings.snapshot_mode:
-            taken = self._recording.snapshot()
+            self._served.toggle_paused()
+        elif key == "s" and self._settings.snapshot_mode and self._served.recording.is_running:
+            taken = self._served.recording.snapshot()
             self._logger.info("Snapshot written" if taken else "There is nothing to write yet")
 
 

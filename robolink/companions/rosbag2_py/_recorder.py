@@ -168,7 +168,7 @@ class Recorder:
         record_options: RecordOptions | None = None,
         node_name: str = "rosbag2_recorder",
     ) -> None:
-        """Start to record; with options here, record until `cancel`, Ctrl-C, the service `~/stop` or a full disk.
+        """Start to record; with options here, record until `cancel`, Ctrl-C or a full disk.
 
         Args:
             storage_options: The bag to write, for a recorder that was made without it.
@@ -179,7 +179,7 @@ class Recorder:
             RuntimeError: if the bag cannot be made, or nothing is selected.
         """
         if storage_options is None:
-            self._recording.served.start()
+            self._recording.start()
             return
         made = _Recording(storage_options, record_options or RecordOptions(), self._level, node_name)
         try:
@@ -197,15 +197,15 @@ class Recorder:
 
     def pause(self) -> None:
         """Let messages pass from now on."""
-        self._recording.served.recording.pause()
+        self._recording.served.pause()
 
     def resume(self) -> None:
         """Record again."""
-        self._recording.served.recording.resume()
+        self._recording.served.resume()
 
     def is_paused(self) -> bool:
         """Return whether messages are let pass."""
-        return self._recording.served.recording.is_paused
+        return self._recording.served.is_paused
 
     @staticmethod
     def cancel() -> None:
@@ -236,9 +236,18 @@ class _Recording:
         """True once it has ended by itself."""
         return self.served.is_over or self.session.is_over
 
+    def start(self) -> None:
+        """Record, also again after `stop`."""
+        if self.served.recording.has_started:
+            self.served.record()
+        else:
+            self.served.start()
+
     def stop(self) -> None:
         """Close the bag, if there is one."""
-        self.served.recording.stop()
+        if self.served.recording.is_running:
+            self.served.stop()
+        self.served.recording.stop()  # of one whose disk is full, the end
 
     def close(self) -> None:
         """End everything. Safe to call twice."""

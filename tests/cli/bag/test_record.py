@@ -20,7 +20,18 @@ from robolink.cli.bag import recorder
 from robolink.cli.bag.recorder import clock, progress, summary
 from robolink.cli.main import main
 from robolink.interfaces.rosbag2_interfaces.msg import WriteSplitEvent
-from robolink.interfaces.rosbag2_interfaces.srv import IsPaused, Pause, Resume, Snapshot, SplitBagfile, Stop
+from robolink.interfaces.rosbag2_interfaces.srv import (
+    IsDiscoveryRunning,
+    IsPaused,
+    Pause,
+    Record,
+    Resume,
+    Snapshot,
+    SplitBagfile,
+    StartDiscovery,
+    Stop,
+    StopDiscovery,
+)
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.publisher import Publisher
 from tests.support.seen_by_commands import a_node_that_commands_see, spinning
@@ -32,8 +43,21 @@ PATIENCE = 30.0
 @pytest.fixture
 def robot(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Node]:
     monkeypatch.chdir(tmp_path)
+    real = recorder.opened
+
+    @contextmanager
+    def opened(enclave: str) -> Iterator[Any]:
+        with real(enclave) as context:
+            OPENED.append(context)
+            yield context
+
+    monkeypatch.setattr(recorder, "opened", opened)
     with a_node_that_commands_see(monkeypatch) as node, spinning(node):
         yield node
+
+
+OPENED: list[Any] = []
+"""Contexts of the commands, the last of which `Run.stop` ends: a thread gets no Ctrl-C."""
 
 
 class Run:
@@ -47,13 +71,14 @@ class Run:
     def _main(self, words: str) -> None:
         self.code = main(["bag", "record", *words.split()])
 
-    def call(self, kind: Any, name: str) -> Any:
+    def call(self, kind: Any, name: str, **fields: Any) -> Any:
         client = self.robot.create_client(kind, f"/rosbag2_recorder/{name}")
         assert client.wait_for_service(PATIENCE)
-        return client.call(kind.Request(), timeout_sec=PATIENCE)
+        return client.call(kind.Request(**fields), timeout_sec=PATIENCE)
 
     def stop(self) -> int:
         self.call(Stop, "stop")
+        OPENED[-1].shutdown()
         return self.end()
 
     def end(self) -> int:
@@ -140,6 +165,28 @@ def test_the_services_of_rosbag2_control_it(robot: Node) -> None:
     (event,) = reported
     assert (Path(event.closed_file).name, Path(event.opened_file).name) == ("bag_0.mcap", "bag_1.mcap")
     assert event.node_name == "/rosbag2_recorder"
+
+
+def test_it_records_again_after_a_stop_and_discovery_is_switched(robot: Node) -> None:
+    count = robot.create_publisher(Int32, "/count", 10)
+    with recording(robot, "-a -o bag") as run:
+        subscribed(count)
+        assert run.call(IsDiscoveryRunning, "is_discovery_running").running
+        assert run.call(StopDiscovery, "stop_discovery").return_code == 0
+        assert run.call(StopDiscovery, "stop_discovery").error_string == "Discovery is not running."
+        assert not run.call(IsDiscoveryRunning, "is_discovery_running").running
+        late = robot.create_publisher(Int32, "/late", 10)
+        assert run.call(Record, "record", uri="second").error_string == "Recorder is already recording."
+        assert late.get_subscription_count() == 0
+        assert run.call(StartDiscovery, "start_discovery").return_code == 0
+        subscribed(late)
+        run.call(Stop, "stop")
+        assert run.call(Record, "record").return_code == 1  # the first bag is there
+        assert run.call(Record, "record", uri="second").return_code == 0
+        subscribed(count)
+        count.publish(Int32(data=1))
+        assert run.stop() == 0
+    assert counts("second")["/count"] == 1
 
 
 def test_a_snapshot_is_written_when_it_is_asked_for(robot: Node) -> None:

@@ -5,7 +5,7 @@ import typing
 import robolink.message
 import robolink.interfaces.builtin_interfaces.msg
 
-__all__ = ["Burst", "GetRate", "IsPaused", "Pause", "Play", "PlayNext", "Resume", "Seek", "SetRate", "Snapshot", "SplitBagfile", "Stop", "TogglePaused"]
+__all__ = ["Burst", "GetRate", "IsDiscoveryRunning", "IsPaused", "Pause", "Play", "PlayNext", "Record", "Resume", "Seek", "SetRate", "Snapshot", "SplitBagfile", "StartDiscovery", "Stop", "StopDiscovery", "TogglePaused"]
 
 class Burst(robolink.message.Service):
     """Play messages as fast as possible, in a paused player.
@@ -30,6 +30,17 @@ class GetRate(robolink.message.Service):
         """1.0 is as fast as it was recorded."""
         rate: builtins.float
         def __init__(self, *, rate: builtins.float = ...) -> None: ...
+class IsDiscoveryRunning(robolink.message.Service):
+    """Whether topics that appear are recorded, too.
+
+    Nothing.
+    """
+    class Request(robolink.message.Message):
+        def __init__(self) -> None: ...
+    class Response(robolink.message.Message):
+        """True if they are."""
+        running: builtins.bool
+        def __init__(self, *, running: builtins.bool = ...) -> None: ...
 class IsPaused(robolink.message.Service):
     """Ask whether there is a pause.
 
@@ -80,6 +91,19 @@ class PlayNext(robolink.message.Service):
         """False when the player is not paused."""
         success: builtins.bool
         def __init__(self, *, success: builtins.bool = ...) -> None: ...
+class Record(robolink.message.Service):
+    """Start a recording, in a recorder that has stopped.
+
+    Folder of the bag; an empty one takes that of the recorder's options.
+    """
+    class Request(robolink.message.Message):
+        uri: builtins.str
+        def __init__(self, *, uri: builtins.str = ...) -> None: ...
+    class Response(robolink.message.Message):
+        """Outcome: 0, or 1 where it records already or cannot, and why, for people."""
+        return_code: builtins.int
+        error_string: builtins.str
+        def __init__(self, *, return_code: builtins.int = ..., error_string: builtins.str = ...) -> None: ...
 class Resume(robolink.message.Service):
     """Go on playing, or recording.
 
@@ -135,6 +159,18 @@ class SplitBagfile(robolink.message.Service):
     class Response(robolink.message.Message):
         """Nothing."""
         def __init__(self) -> None: ...
+class StartDiscovery(robolink.message.Service):
+    """Record topics that appear from now on, too.
+
+    Nothing.
+    """
+    class Request(robolink.message.Message):
+        def __init__(self) -> None: ...
+    class Response(robolink.message.Message):
+        """Outcome: 0, or 1 where nothing is recorded or it does so already, and why, for people."""
+        return_code: builtins.int
+        error_string: builtins.str
+        def __init__(self, *, return_code: builtins.int = ..., error_string: builtins.str = ...) -> None: ...
 class Stop(robolink.message.Service):
     """Stop playing.
 
@@ -145,6 +181,18 @@ class Stop(robolink.message.Service):
     class Response(robolink.message.Message):
         """Nothing."""
         def __init__(self) -> None: ...
+class StopDiscovery(robolink.message.Service):
+    """Record no topics but those that are there.
+
+    Nothing.
+    """
+    class Request(robolink.message.Message):
+        def __init__(self) -> None: ...
+    class Response(robolink.message.Message):
+        """Outcome: 0, or 1 where it does so already, and why, for people."""
+        return_code: builtins.int
+        error_string: builtins.str
+        def __init__(self, *, return_code: builtins.int = ..., error_string: builtins.str = ...) -> None: ...
 class TogglePaused(robolink.message.Service):
     """Pause, or go on after a pause.
 
