@@ -47,6 +47,7 @@ launch.utilities launch.typed_values type_utils
 launch_ros launch_ros.events event_handlers
 launch_ros launch_ros.parameters parameters_type
 launch_ros launch_ros.utilities remap_rule_type
+launch_ros launch_ros.ros_adapters ros_adapters
 launch_ros.actions launch_ros.components composable_node_container load_composable_nodes
 launch_ros.actions launch_ros.lifecycle lifecycle_node lifecycle_transition
 launch_ros.actions launch_ros.node node

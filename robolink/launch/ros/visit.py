@@ -234,7 +234,11 @@ class Visit:
             self._containers[name] = action
             self._load(action.composable_node_descriptions, name, action)
         elif isinstance(action, LoadComposableNodes):
-            self._load(action.composable_node_descriptions, target_of(action, self.context), action)
+            target = target_of(action, self.context)
+            if self.context.asyncio_loop is None or target in self._containers:
+                self._load(action.composable_node_descriptions, target, action)
+            else:  # a program's LaunchService meets containers of others
+                action.ask(self.context, f"/{target}")
         elif isinstance(action, ExecuteLocal):
             self._start(action)
         elif isinstance(action, TimerAction):

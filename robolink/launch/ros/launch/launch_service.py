@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Awaitable, Generator, Iterable
+from collections.abc import Awaitable, Coroutine, Generator, Iterable
 from typing import TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import Event, LaunchContext, LaunchError
@@ -34,6 +34,8 @@ class LaunchService:
         self._runner: Runner | None = None
         self._task: asyncio.Task[Any] | None = None
         self._lock = threading.RLock()
+        self._thread = 0
+        """Identifier of the thread of its loop."""
 
     @property
     def context(self) -> LaunchContext:
@@ -92,7 +94,7 @@ class LaunchService:
             if self._runner is not None:
                 raise LaunchError("this LaunchService runs already: it cannot run twice at one time")
             self._runner = Runner(self.__context, debug=self._debug)
-        self._task = asyncio.current_task()
+        self._task, self._thread = asyncio.current_task(), threading.get_ident()
         try:
             return await self._runner.run(shutdown_when_idle=shutdown_when_idle)
         finally:
@@ -111,23 +113,25 @@ class LaunchService:
         if loop is None or self.__context.is_shutdown:
             return None
         self.__context.emit_event_sync(Shutdown(reason="LaunchService.shutdown() called"))
-        return _Done() if not force_sync and _is_running_here(loop) else None
+        return _Done() if not force_sync and self._thread == threading.get_ident() else None
 
 
-class _Done:
-    """Awaitable that is done; unlike a coroutine it may be thrown away."""
+class _Done(Coroutine[Any, Any, None]):
+    """Coroutine that is done; unlike one of a function it may be thrown away."""
 
     def __await__(self) -> Generator[Any, None, None]:
         yield from ()
 
+    def send(self, value: Any) -> None:
+        """End: raises StopIteration; `value` is ignored."""
+        raise StopIteration
 
-def _is_running_here(loop: asyncio.AbstractEventLoop) -> bool:
-    import asyncio
+    def throw(self, *error: Any) -> None:
+        """Raise the first of `error`."""
+        raise error[0]
 
-    try:
-        return asyncio.get_running_loop() is loop
-    except RuntimeError:
-        return False
+    def close(self) -> None:
+        """Do nothing."""
 
 
 def _loop_of_thread() -> tuple[asyncio.AbstractEventLoop, bool]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import threading
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import Action, LaunchArgumentError, LaunchContext, SomeSubstitutionsType
+from robolink.launch.ros.launch.logging import get_logger
 from robolink.launch.ros.launch.utilities import performed
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
-from robolink.launch.ros.launch_ros.node import Node
+from robolink.launch.ros.launch_ros.node import Node, note_name
 from robolink.launch.ros.launch_ros.settings import NAMESPACE, PARAMETERS, REMAPS
 from robolink.launch.ros.launch_ros.utilities import (
     evaluate_parameters,
@@ -20,7 +22,9 @@ from robolink.launch.ros.launch_ros.utilities import (
 )
 
 if TYPE_CHECKING:
+    from robolink.client import Client
     from robolink.interfaces.composition_interfaces.srv import LoadNode
+    from robolink.task import Future
 
 
 class ComposableNodeContainer(Node):
@@ -66,6 +70,69 @@ class LoadComposableNodes(Action):
         super().__init__(**kwargs)
         self.composable_node_descriptions = list(composable_node_descriptions)
         self.target_container = target_container
+
+    def ask(self, context: LaunchContext, container: str) -> None:
+        """Ask a container that this launch has not started for the components, one after the other, on a thread.
+
+        A LaunchService goes on until it has answered, or until it ends itself.
+
+        Args:
+            context: Context of a LaunchService.
+            container: Full name of the container.
+        """
+        requests = [get_composable_node_load_request(each, context) for each in self.composable_node_descriptions]
+        known = [each for each in requests if each is not None]
+        if not known or context.asyncio_loop is None:
+            return
+        from robolink.interfaces.composition_interfaces.srv import LoadNode
+        from robolink.launch.ros.launch_ros.ros_adapters import get_ros_node
+
+        client = get_ros_node(context).create_client(LoadNode, f"{container}/_container/load_node")
+        loading = context.asyncio_loop.run_in_executor(None, _load, context, client, container, known)
+        context.add_completion_future(loading)
+
+
+LOOK_AGAIN = 0.2
+"""Interval between two looks whether the launch has ended, in s."""
+
+
+def _load(context: LaunchContext, client: Client, container: str, requests: Sequence[LoadNode.Request]) -> None:
+    """Have a container load components, as long as the launch goes on."""
+    logger = get_logger("launch_ros.actions.load_composable_nodes")
+    for request in requests:
+        while not client.wait_for_service(timeout_sec=LOOK_AGAIN):
+            if context.is_shutdown:
+                logger.warning(f"Abandoning wait for the '{client.srv_name}' service, due to shutdown.")
+                return
+        future = client.call_async(request)
+        if not _has_ended(future, context):
+            logger.warning(f"Abandoning wait for the '{client.srv_name}' service response, due to shutdown.")
+            return
+        _note_answer(context, container, request, future.result(), logger)
+
+
+def _has_ended(future: Future[Any], context: LaunchContext) -> bool:
+    """Wait until a call is answered, True, or until the launch ends, False, and cancel it then."""
+    answered = threading.Event()
+    future.add_done_callback(lambda _: answered.set())
+    while not answered.wait(LOOK_AGAIN):
+        if context.is_shutdown:
+            future.cancel()
+            return False
+    return True
+
+
+def _note_answer(
+    context: LaunchContext, container: str, request: LoadNode.Request, response: LoadNode.Response | None, logger: Any
+) -> None:
+    name = (response.full_node_name if response is not None else "") or request.node_name
+    if response is None or not response.success:
+        why = "no answer" if response is None else response.error_message
+        what = f"node '{name}' of type '{request.plugin_name}' in container '{container}'"
+        logger.error(f"Failed to load {what}: {why}")
+        return
+    note_name(context, name)
+    logger.info(f"Loaded node '{name}' in container '{container}'")
 
 
 def get_composable_node_load_request(

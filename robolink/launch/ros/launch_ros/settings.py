@@ -9,7 +9,7 @@ from robolink.arguments.parameter_file import parse_parameter_value
 from robolink.exceptions import DocumentError, NameValidationException
 from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
 from robolink.launch.ros.launch.substitutions import SubstitutionFailure
-from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from robolink.launch.ros.launch.utilities import boolean, normalize_to_list_of_substitutions, perform_substitutions
 from robolink.launch.ros.launch_ros.parameters import evaluate_parameter_dict, normalize_parameter_dict
 from robolink.launch.ros.launch_ros.utilities import make_namespace_absolute, prefix_namespace
 from robolink.system.terminal import shown
@@ -135,15 +135,23 @@ class SetUseSimTime(Action):
         **kwargs: `condition`.
     """
 
-    def __init__(self, value: bool, **kwargs: Any) -> None:
+    def __init__(self, value: bool | SomeSubstitutionsType, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.value = value
 
     def execute(self, context: LaunchContext) -> None:
-        """Add a line to `context` that says so: the launcher's own node has no timers here."""
-        context.said.append(
-            "SetUseSimTime sets the clock of the launcher, and that of no node: SetParameter('use_sim_time', True) does"
-        )
+        """Set it in a LaunchService; `robolink launch` has no such node, and says so in a line of `context`."""
+        if context.asyncio_loop is None:
+            context.said.append(
+                "SetUseSimTime sets the clock of the launcher, and that of no node: "
+                "SetParameter('use_sim_time', True) does"
+            )
+            return
+        from robolink.launch.ros.launch_ros.ros_adapters import get_ros_node
+        from robolink.parameter import Parameter
+
+        value = boolean(context, self.value)
+        get_ros_node(context).set_parameters([Parameter("use_sim_time", value=value)])
 
 
 class SetParametersFromFile(Action):
