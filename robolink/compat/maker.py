@@ -26,8 +26,8 @@ ALIKE = 0.85
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 NEVER_A_CHECKOUT = frozenset(
     {
-        *("cv_bridge", "launch", "launch_ros", "launch_testing", "launch_testing_ros", "launch_xml", "launch_yaml"),
-        *("rclpy", "rosbag2_py", "rosidl_runtime_py", "tf2_py", "webots_ros2_driver"),
+        *("cv_bridge", "launch", "launch_pytest", "launch_ros", "launch_testing", "launch_testing_ros", "launch_xml"),
+        *("launch_yaml", "rclpy", "rosbag2_py", "rosidl_runtime_py", "tf2_py", "webots_ros2_driver"),
     }
 )
 """Names that a folder of the user's own does not take: a clone of their repositories in a workspace cannot run here (it

@@ -145,6 +145,10 @@ ROOMS = {
     "rosbag2_py._message_definitions": "robolink.companions.rosbag2_py._definitions",
     "rosbag2_py._compression_options": "robolink.companions.rosbag2_py._storage",
     "diagnostic_updater": "robolink.companions.diagnostic_updater",
+    "launch_pytest": "robolink.testing.launch_pytest",
+    "launch_pytest.actions": "robolink.launch.ros.launch_testing.actions",
+    "launch_pytest.fixture": "robolink.testing.launch_pytest.fixtures",
+    "launch_pytest.tools.process": "robolink.testing.launch_pytest.tools",
     "nav2_common": "",
     "nav2_simple_commander": "robolink.companions.nav2_simple_commander",
     "nav2_simple_commander.utils": "robolink.companions.nav2_simple_commander",
@@ -154,7 +158,6 @@ ROOMS = {
 """Modules by name; '' is a package with nothing in it. A name below another is below its module."""
 
 INSTEAD = {
-    "launch_pytest": "pytest runs its tests, robolink.testing has system.launch() (docs/reference/testing.md)",
     "launch.exit_handler": "that is ROS 2 before Bouncy (2018): Node(respawn=True, on_exit=...) is what it has now",
     "launch.legacy": "that is ROS 2 before Bouncy (2018): launch.actions and launch_ros.actions are what it has now",
     "tf2_kdl": "tf2_geometry_msgs transforms the types of geometry_msgs, tf_transformations has the matrices",

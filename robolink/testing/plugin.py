@@ -84,16 +84,24 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marks of launch tests."""
+    config.addinivalue_line(
+        "markers", "launch(fixture, shutdown=False): a test beside, or after, a launch_pytest fixture"
+    )
     for name in ("launch_test", "rostest"):
         config.addinivalue_line("markers", f"{name}: the function that describes the processes of a launch test")
 
 
 _LAUNCH_TEST = re.compile(rb"^def generate_test_description\(", re.MULTILINE)
+_LAUNCH_PYTEST = re.compile(rb"\blaunch_pytest\b|\bmark\.launch\b")
 
 
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
     """Return the collector of a file that is a launch test; None leaves others, and ROS 2's own, to other plugins."""
-    if parent.config.pluginmanager.hasplugin("launch_testing") or not _is_launch_test(module_path):
+    text = _text_of(module_path)
+    if _LAUNCH_PYTEST.search(text):
+        _use_launch_pytest(parent.config.pluginmanager)
+        return None
+    if parent.config.pluginmanager.hasplugin("launch_testing") or not _LAUNCH_TEST.search(text):
         return None
     from robolink import compat
 
@@ -104,11 +112,23 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
     return LaunchTestModule.from_parent(parent, path=module_path)
 
 
-def _is_launch_test(file: Path) -> bool:
+def _text_of(file: Path) -> bytes:
     try:
-        return _LAUNCH_TEST.search(file.read_bytes()) is not None
+        return file.read_bytes()
     except OSError:  # pytest itself says why it cannot be read
-        return False
+        return b""
+
+
+def _use_launch_pytest(plugins: pytest.PytestPluginManager) -> None:
+    """Load robolink's plugin of launch_pytest, unless ROS 2's own is there, or it has been loaded."""
+    if plugins.hasplugin("launch_pytest"):
+        return
+    from robolink import compat
+
+    if compat.activate():
+        from robolink.testing.launch_pytest import plugin
+
+        plugins.register(plugin, "launch_pytest")
 
 
 _SYSTEM = pytest.StashKey["System"]()

@@ -280,8 +280,8 @@ class Runner:
 
     def wrote(self, name: str, piece: bytes, fd: int) -> None:
         """Handle a piece of what a process writes."""
+        self._outputs[name].write(piece, fd)  # first: who hears of the event looks at all that was written
         self.take(self._reactions.line(name, piece, self.now, fd))
-        self._outputs[name].write(piece, fd)
 
     def exited(self, name: str, returncode: int, *, is_over: bool) -> None:
         """Handle that a process has ended; `is_over` unless it is started again."""

@@ -140,7 +140,7 @@ def is_users(file: str) -> bool:
 ALIKE = 0.8
 """Similarity from 0 to 1 above which an unknown name is taken for a misspelt one of a module that is here."""
 FOREIGN = frozenset({
-    "controller_manager", "launch_pal", "launch_param_builder", "launch_pytest", "launch_testing_ros", "moveit",
+    "controller_manager", "launch_pal", "launch_param_builder", "moveit",
     "moveit_commander", "moveit_configs_utils", "tracetools_launch",
 })  # fmt: skip
 """Modules of ROS 2 that are not here; some of their names are like those of others, or have advice for nodes."""
