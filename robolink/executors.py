@@ -262,7 +262,7 @@ class Executor:
 
     @property
     def is_spinning(self) -> bool:
-        """Whether any thread spins: rclpy's name of `spinning`."""
+        """True while any thread spins: rclpy's name of `spinning`."""
         return self.spinning
 
     @property

@@ -93,8 +93,29 @@ class _OfStore:
 class BaseNode(Destroyable):
     """Base of Node and AsyncNode: names, parameters, the graph, and the end.
 
-    Its arguments are those of `Node`. A kind of node has `create_publisher` and its sisters, which make entities of its
-    own classes.
+    A kind of node has `create_publisher` and its sisters, which make entities of its own classes.
+
+    Args:
+        node_name: Name without namespace: letters, digits and underscores. The ROS argument `-r __node:=name`
+            replaces it.
+        context: Context to live in, which must be initialized; None is the default one, that of `rclpy.init`.
+        cli_args: Command line for this node alone, such as `["--ros-args", "-r", "chatter:=news"]`. It goes before
+            the context's arguments. None adds nothing.
+        namespace: Prefix of the node's name and of its relative topics, with or without the leading slash; None is
+            the root. The ROS argument `-r __ns:=/name` replaces it.
+        use_global_arguments: False ignores the context's ROS arguments (those of the program's command line).
+        enable_rosout: True publishes what the node logs on /rosout, unless the arguments say
+            `--disable-rosout-logs`.
+        start_parameter_services: True starts the six services by which others read and set parameters
+            (`~/get_parameters` ...).
+        parameter_overrides: Values that go before the defaults with which the node declares its parameters, and
+            before those of the command line and of parameter files.
+        allow_undeclared_parameters: True lets parameters be set that were never declared; reading one that does not
+            exist then returns one without a value.
+        automatically_declare_parameters_from_overrides: True declares every override at once, with its own type.
+        enable_logger_service: True starts the services that read and set the levels of loggers
+            (`~/get_logger_levels`, `~/set_logger_levels`).
+        rosout_qos_profile: Quality of service of what it logs on /rosout; a number is a depth.
     """
 
     _runs_itself_ = False
@@ -278,7 +299,7 @@ class BaseNode(Destroyable):
         return self._context.wait_until(holds, timeout_sec)
 
     def _abandon_(self, future: Future[Any]) -> None:
-        """Give up a future whose call was ended with its client: as in rclpy, it stays open."""
+        """Leave a `future` open whose call was ended with its client, as in rclpy; an AsyncNode cancels it."""
 
     def _belong_to_(self, executor: Any) -> None:
         """Note the executor that has this node from now on; None for none."""
