@@ -1,7 +1,7 @@
-"""Events of publishers and subscriptions: a match at the other end, lost messages, types that differ.
+"""Events of publishers and subscriptions: a match, lost messages, types that differ, deadlines and liveliness.
 
-What can happen is what can happen under rmw_zenoh: there are no deadlines and no liveliness leases on this wire, and
-no two profiles are incompatible.
+Deadlines and liveliness are watched at each end, by its own profile, as ROS 2 does over DDS: rmw_zenoh takes callbacks
+for them since Lyrical and never calls them. No two profiles are incompatible, as under rmw_zenoh.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import RobolinkError
 from robolink.qos import QoSPolicyKind
 from robolink.running.entity import NOTHING, Entity
+from robolink.running.expectations import Expectation
 
 if TYPE_CHECKING:
     from robolink.running.ports import Loop
@@ -79,27 +80,28 @@ class IncompatibleTypeInfo(CountedInfo, frozen=True):
 
 
 class QoSRequestedDeadlineMissedInfo(CountedInfo, frozen=True):
-    """Does not happen on this network."""
+    """Count of deadlines within which no message was received, since the first one."""
 
 
 class QoSOfferedDeadlineMissedInfo(CountedInfo, frozen=True):
-    """Does not happen on this network."""
+    """Count of deadlines within which no message was published, since the first one."""
 
 
 class QoSLivelinessLostInfo(CountedInfo, frozen=True):
-    """Does not happen on this network."""
+    """Count of leases that ended without a message or `assert_liveliness`."""
 
 
 class QoSLivelinessChangedInfo(msgspec.Struct, frozen=True):
-    """Does not happen on this network; rclpy's fields `alive_count`, `not_alive_count` and their changes stay 0.
-
-    The changes are `alive_count_change` and `not_alive_count_change`.
-    """
+    """Counts of the publishers that are alive and that are not, and their changes."""
 
     alive_count: int = 0
+    """Number of matched publishers that are alive."""
     not_alive_count: int = 0
+    """Number of matched publishers that were alive, and have been silent for longer than the lease."""
     alive_count_change: int = 0
+    """Change of `alive_count` since the callback was last called."""
     not_alive_count_change: int = 0
+    """Change of `not_alive_count` since the callback was last called."""
 
 
 class QoSRequestedIncompatibleQoSInfo(CountedInfo, frozen=True):
@@ -112,16 +114,20 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 QoSPublisherMatchedInfo = MatchedInfo
 QoSSubscriptionMatchedInfo = MatchedInfo
 
-_INFO: dict[EventType, type[CountedInfo]] = {
+_INFO: dict[EventType, type[CountedInfo] | type[QoSLivelinessChangedInfo]] = {
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: QoSOfferedDeadlineMissedInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: QoSLivelinessLostInfo,
     QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: QoSOfferedIncompatibleQoSInfo,
     QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeInfo,
     QoSPublisherEventType.RCL_PUBLISHER_MATCHED: QoSPublisherMatchedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: QoSRequestedDeadlineMissedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: QoSLivelinessChangedInfo,
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: QoSRequestedIncompatibleQoSInfo,
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: QoSMessageLostInfo,
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeInfo,
     QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: QoSSubscriptionMatchedInfo,
 }
-"""Events that exist here, each with the type of its callback's argument."""
+"""Type of the argument of each event's callback."""
 
 
 class Parent(Protocol):
@@ -142,8 +148,14 @@ class EventHandler(Entity):
         parent_impl: Publisher or subscription.
 
     Raises:
-        UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
+        UnsupportedEventTypeError: (a RuntimeError) for something that is not an event's type.
     """
+
+    version = 0
+    """Number that changes whenever an older time of the next look no longer holds."""
+
+    _period = 1
+    """A host asks: it is not a timer that is due as often as possible."""
 
     def __init__(
         self,
@@ -155,8 +167,7 @@ class EventHandler(Entity):
     ) -> None:
         if event_type not in _INFO:
             raise UnsupportedEventTypeError(
-                f"{parent_impl.topic_name}: there are no events of type {event_type.name} on this network, nor"
-                " under rmw_zenoh: give no callback for it"
+                f"expected a QoSPublisherEventType or QoSSubscriptionEventType, got {event_type!r:.80}"
             )
         super().__init__(callback_group)
         self.event_type = event_type
@@ -166,6 +177,8 @@ class EventHandler(Entity):
         self._lock = threading.Lock()
         self._status = MatchedInfo()
         self._happened = False
+        self._expectation: Expectation | None = None
+        self._steady: Callable[[], int] = int
 
     @property
     def callback(self) -> Callback:
@@ -194,14 +207,31 @@ class EventHandler(Entity):
         if queue is not None:
             queue.post(self)
 
+    def expect(self, expectation: Expectation, steady: Callable[[], int]) -> None:
+        """Report what becomes of this `expectation` from now on, by the clock `steady`, in nanoseconds."""
+        self._expectation, self._steady = expectation, steady
+        expectation.wake = self._look_soon
+
+    def _look_soon(self) -> None:
+        queue = self._queue_  # another thread may take it away meanwhile
+        if queue is not None:
+            queue.post(self)
+
     def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this executor; what happened before counts."""
         super().attach(executor, has_turn)
-        if self._happened and not has_turn:
+        if (self._happened or self._expectation is not None) and not has_turn:
             executor._queue_.post(self)
+
+    def detach(self) -> None:
+        """Belong to no executor."""
+        super().detach()
+        self.version += 1
 
     def take(self) -> Any:
         """Return the info of what has happened since the last time, or NOTHING."""
+        if self._expectation is not None:
+            return self._take_expected(self._expectation)
         with self._lock:
             if not self._happened:
                 return NOTHING
@@ -209,6 +239,19 @@ class EventHandler(Entity):
             self._status = MatchedInfo(now.total_count, 0, now.current_count, 0)
         info = _INFO[self.event_type]
         return now if info is MatchedInfo else info(now.total_count, now.total_count_change)
+
+    def _take_expected(self, expectation: Expectation) -> Any:
+        if self._destroyed:
+            return NOTHING
+        now = self._steady()
+        found, due = expectation.take(now)
+        self.version += 1
+        queue = self._queue_
+        if queue is not None and due is not None:
+            queue.schedule(self, due - now)
+            if found is None:
+                queue.wake()  # whoever looks just now has asked before when the next one is due
+        return NOTHING if found is None else found
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
@@ -241,6 +284,23 @@ class QoSEventHandler(EventHandler):
         super().__init__(**kwargs)
 
 
+def expect(
+    handlers: Iterable[EventHandler], kind: EventType, expectation: Expectation, steady: Callable[[], int]
+) -> bool:
+    """Let the handlers of a kind of event report what becomes of an expectation; False if there are none.
+
+    Args:
+        handlers: Handlers of a publisher or subscription.
+        kind: Kind of the event.
+        expectation: Deadline, lease or liveliness that is reported.
+        steady: Clock that it goes by, in nanoseconds.
+    """
+    found = [handler for handler in handlers if handler.event_type is kind]
+    for handler in found:
+        handler.expect(expectation, steady)
+    return bool(found)
+
+
 def tell_handlers(handlers: Iterable[EventHandler], kinds: Container[EventType], total: int, current: int = 0) -> None:
     """Pass an event on to those handlers that are of its kind.
 
@@ -264,8 +324,10 @@ class PublisherEventCallbacks:
     """Callbacks for a publisher's events, each a function of one argument; None ignores the event.
 
     Args:
-        deadline: Refused by `create_publisher` with an UnsupportedEventTypeError: nothing enforces deadlines.
-        liveliness: Refused likewise.
+        deadline: Function of a QoSOfferedDeadlineMissedInfo: nothing was published for longer than the profile's
+            deadline.
+        liveliness: Function of a QoSLivelinessLostInfo: with MANUAL_BY_TOPIC, nothing was published or asserted for
+            longer than the lease. Never called with AUTOMATIC.
         incompatible_qos: Function of a QoSOfferedIncompatibleQoSInfo; never called, since all profiles can talk.
         incompatible_type: Function of an IncompatibleTypeInfo: a subscription has another type.
         matched: Function of a QoSPublisherMatchedInfo: a subscription has come or gone.
@@ -298,9 +360,6 @@ class PublisherEventCallbacks:
             callback_group: Group of the callbacks; None is none.
             publisher: Publisher whose events they are.
             topic_name: Fully qualified name of its topic; rclpy's, the publisher knows it.
-
-        Raises:
-            UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
         """
         kind = QoSPublisherEventType
         callbacks = {
@@ -319,9 +378,11 @@ class SubscriptionEventCallbacks:
     """Callbacks for a subscription's events, each a function of one argument; None ignores the event.
 
     Args:
-        deadline: Refused by `create_subscription` with an UnsupportedEventTypeError: nothing enforces deadlines.
+        deadline: Function of a QoSRequestedDeadlineMissedInfo: nothing was received for longer than the profile's
+            deadline.
         incompatible_qos: Function of a QoSRequestedIncompatibleQoSInfo; never called, since all profiles can talk.
-        liveliness: Refused as `deadline` is.
+        liveliness: Function of a QoSLivelinessChangedInfo, if the profile has a lease: a publisher became alive, has
+            been silent for longer than the lease, or has gone.
         message_lost: Function of a QoSMessageLostInfo: messages did not arrive.
         incompatible_type: Function of an IncompatibleTypeInfo: a publisher has another type.
         matched: Function of a QoSSubscriptionMatchedInfo: a publisher has come or gone.
@@ -356,9 +417,6 @@ class SubscriptionEventCallbacks:
             callback_group: Group of the callbacks; None is none.
             subscription: Subscription whose events they are.
             topic_name: Fully qualified name of its topic; rclpy's, the subscription knows it.
-
-        Raises:
-            UnsupportedEventTypeError: (a RuntimeError) for an event that this network does not have.
         """
         kind = QoSSubscriptionEventType
         callbacks = {

@@ -8,11 +8,21 @@ from typing import Any, Generic, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.duration import Duration
-from robolink.event_handler import PublisherEventCallbacks, QoSPublisherEventType, tell_handlers, warns_of_types
+from robolink.event_handler import (
+    PublisherEventCallbacks,
+    QoSLivelinessLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSPublisherEventType,
+    expect,
+    tell_handlers,
+    warns_of_types,
+)
 from robolink.graph.endpoint import Endpoint, Owner
+from robolink.graph.liveliness import assertions, deadline_ns, is_manual, lease_ns
 from robolink.message import Message, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.destroyable import Destroyable
+from robolink.running.expectations import Deadline, Lease
 from robolink.running.ports import ContextLike
 from robolink.system.waits import fork_lock
 from robolink.transport.history import Latch, latched_depth
@@ -53,6 +63,9 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._outlets = _Outlets(self._endpoint, qos_profile)
         self._put, self._attachment = self._outlets.put, self._endpoint.attachment
         self._put_numbered = self._outlets.put_numbered
+        self._tell_alive = assertions(self._endpoint) if is_manual(qos_profile) else None
+        self._lease: Lease | None = None
+        self._expect(owner.context.time.steady)
         self._endpoint.warns = warns_of_types(callbacks)
         self._keeps_: object = None
         """The node, which lives while anybody refers to the publisher; None for those that the node made for itself."""
@@ -87,6 +100,26 @@ class Publisher(Destroyable, Generic[MsgT]):
         # Locked, or a thread could be overtaken by another between its number and its place on the wire.
         with self._outlets.lock:
             self._put(payload, self._attachment())
+
+    def _expect(self, steady: Callable[[], int]) -> None:
+        """Let each message meet the deadline and renew the lease, where there are callbacks for what becomes of them.
+
+        Both are noted as a message is numbered: publishers without such callbacks do nothing more than before.
+        """
+        self._steady, kind, qos = steady, QoSPublisherEventType, self.qos_profile
+        deadline, lease = deadline_ns(qos), lease_ns(qos) if is_manual(qos) else None
+        notes: list[Callable[[int], None]] = []
+        if deadline is not None:
+            expected = Deadline(deadline, QoSOfferedDeadlineMissedInfo)
+            if expect(self.event_handlers, kind.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, expected, steady):
+                notes.append(expected.note)
+        if lease is not None:
+            held = Lease(lease, QoSLivelinessLostInfo)
+            if expect(self.event_handlers, kind.RCL_PUBLISHER_LIVELINESS_LOST, held, steady):
+                notes.append(held.note)
+                self._lease = held
+        if notes:
+            self._attachment = _noting(self._attachment, notes, steady)
 
     @property
     def _used_in_(self) -> ContextLike | None:
@@ -134,8 +167,19 @@ class Publisher(Destroyable, Generic[MsgT]):
         return True
 
     def assert_liveliness(self) -> None:
-        """Do nothing: the process's liveliness token says that it is alive."""
+        """Assert that this publisher is alive, if its liveliness is MANUAL_BY_TOPIC, to all subscriptions.
+
+        Each message does so as well. With AUTOMATIC there is nothing to do: it is alive while it is there. A node of
+        ROS 2 that uses rmw_zenoh does not hear of it, nor does one that uses DDS.
+
+        Raises:
+            InvalidHandle: (a RuntimeError) after `destroy`.
+        """
         self._check_(f"publisher of {self.topic}")
+        if self._lease is not None:
+            self._lease.note(self._steady())
+        if self._tell_alive is not None:
+            self._tell_alive()
 
     def destroy(self) -> None:
         """End the publisher, and undeclare it. Safe to call twice."""
@@ -163,6 +207,20 @@ def _weakly(method: Callable[..., object]) -> Callable[..., object]:
         return None if found is None else found(*arguments)
 
     return call
+
+
+def _noting(
+    attachment: Callable[[], bytes], notes: list[Callable[[int], None]], steady: Callable[[], int]
+) -> Callable[[], bytes]:
+    """Return a function that makes the attachment of a message, and notes its time."""
+
+    def noted() -> bytes:
+        now = steady()
+        for note in notes:
+            note(now)
+        return attachment()
+
+    return noted
 
 
 class _Outlets:

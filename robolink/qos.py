@@ -114,7 +114,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """Liveliness: how a publisher shows that it is alive. It is announced, but has no effect on this network."""
+    """Liveliness: how a publisher shows that it is alive. See `assert_liveliness` of a publisher."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -151,8 +151,8 @@ class QoSProfile:
     """Quality of service of a publisher, subscription, service or client: `QoSProfile(depth=10)`.
 
     `history` or `depth` is required, and KEEP_LAST requires a depth. Policies may be given as rmw's numbers. Over
-    Zenoh every pair of profiles can talk; where they differ, the weaker one holds. Deadline, lifespan and liveliness
-    are announced to tools and to the other ends, but nothing enforces them, as under rmw_zenoh.
+    Zenoh every pair of profiles can talk; where they differ, the weaker one holds. Deadline and
+    liveliness have events, for which a publisher or subscription has callbacks. Nothing enforces a lifespan.
 
     Args:
         history: KEEP_LAST keeps the latest `depth` samples, KEEP_ALL keeps all; by default KEEP_LAST.

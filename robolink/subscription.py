@@ -10,26 +10,31 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.event_handler import (
+    QoSLivelinessChangedInfo,
+    QoSRequestedDeadlineMissedInfo,
     QoSSubscriptionEventType,
     SubscriptionEventCallbacks,
+    expect,
     tell_handlers,
     warns_of_types,
 )
 from robolink.exceptions import DecodeError, OverwrittenError, RCLError, TransportError, WireError
 from robolink.graph.endpoint import Endpoint, Owner
 from robolink.graph.humble import Copies, CopyError, FromHumbleKey
+from robolink.graph.liveliness import deadline_ns, lease_ns, watch_publishers
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, message_type
 from robolink.qos import QoSProfile
 from robolink.running.backlog import Backlog, Gaps, Sequence
 from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
 from robolink.running.execution import takes_arguments
+from robolink.running.expectations import Deadline, Liveliness
 from robolink.running.inbox import Inbox
 from robolink.system.terminal import shown
 from robolink.text.callbacks import signature_of
 from robolink.transport.base import Handle, Sample
 from robolink.transport.history import ALL, stored_depth
-from robolink.wire import EndpointKind, check_attachment, is_attachment, unpack_attachment
+from robolink.wire import EndpointKind, check_attachment, gid_in, is_attachment, unpack_attachment
 
 if TYPE_CHECKING:
     from robolink.running.ports import Loop
@@ -126,9 +131,10 @@ class Subscription(Receiver, Generic[MsgT]):
             self._backlog = Backlog(topic, self._make_gaps(), owner.context.time.steady)
             self._open = self._open_stored
         self._listen_for_events(callbacks)
+        self._notes: tuple[Callable[[Any], object], ...] = self._expect(owner.context.time.steady)
         self._endpoint.speak_humble = self._speak_humble
         for key in filter(None, (self._endpoint.key, self._endpoint.buffer_key)):
-            self._handles.append(self._endpoint.transport.subscribe(key, qos_profile, self.sink))
+            self._handles.append(self._endpoint.transport.subscribe(key, qos_profile, self._noting(self.sink)))
         self._endpoint.announce()
 
     @property
@@ -302,6 +308,39 @@ class Subscription(Receiver, Generic[MsgT]):
     def _on_disagreement(self) -> None:
         tell_handlers(self.event_handlers, {QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE}, total=1)
 
+    def _expect(self, steady: Callable[[], int]) -> tuple[Callable[[Any], object], ...]:
+        """Watch deadline and liveliness, where there are callbacks for them.
+
+        Returns:
+            Functions that note what arrives.
+        """
+        kind, qos, transport = QoSSubscriptionEventType, self.qos_profile, self._endpoint.transport
+        deadline, lease = deadline_ns(qos), lease_ns(qos)
+        notes: list[Callable[[Any], object]] = []
+        if deadline is not None:
+            expected = Deadline(deadline, QoSRequestedDeadlineMissedInfo)
+            if expect(self.event_handlers, kind.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, expected, steady):
+                notes.append(lambda arrived: expected.note(steady()))
+        if lease is not None:
+            liveliness = Liveliness(lease, QoSLivelinessChangedInfo)
+            if expect(self.event_handlers, kind.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, liveliness, steady):
+                self._handles.append(watch_publishers(self._endpoint, liveliness, steady))
+                notes.append(lambda arrived: liveliness.note(gid_in(transport.attachment(arrived)), steady()))
+        return tuple(notes)
+
+    def _noting(self, sink: Callable[[Any], object]) -> Callable[[Any], object]:
+        """Return a sink that notes what arrives, where that is of use, as it arrives: a program may be busy then."""
+        if not self._notes:
+            return sink  # C from end to end
+        notes = self._notes
+
+        def note_and_sink(arrived: Any) -> None:
+            for note in notes:
+                note(arrived)
+            sink(arrived)
+
+        return note_and_sink
+
     def _make_gaps(self) -> Gaps:
         """Look for gaps of all senders, or of those that send to one key alone, where some may send to several."""
         return Gaps(self._sends_to_one_key) if self._endpoint.buffer_key else Gaps()
@@ -325,7 +364,8 @@ class Subscription(Receiver, Generic[MsgT]):
         self._read, self._open = read_once, None
         with self._parking.lock:  # held, too, where `redirect` is called
             self._humble_receiver = _HumbleReceiver(self, self._inbox, copies)
-        self._handles.append(self._endpoint.transport.subscribe(key, self.qos_profile, self._humble_receiver.sink))
+        sink = self._noting(self._humble_receiver.sink)
+        self._handles.append(self._endpoint.transport.subscribe(key, self.qos_profile, sink))
         if self._destroyed:  # meanwhile
             self._close()
 

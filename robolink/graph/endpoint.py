@@ -136,6 +136,8 @@ class Endpoint:
         """True if the node logs a warning about such an endpoint."""
         self.on_other: Callable[[bool], object] = lambda came: None
         """Function called for each matching endpoint: True if it came, False if it went."""
+        self.on_match: Callable[[bytes, EndpointToken, bool], object] = lambda gid, token, came: None
+        """Function called likewise, before `on_other`, with the gid and the token of that endpoint."""
         self.speak_humble: Callable[[str], object] = lambda key: None
         """Function called once, with the second key, when a Humble peer matches; for a service, when there is any."""
         self.humble_key = self.key if self.type_hash == NO_HASH else ""
@@ -183,10 +185,12 @@ class Endpoint:
         """Note, on any thread, an endpoint at the other end of this name."""
         if not alive:
             if self.others.pop(gid, None) is not None:
+                self.on_match(gid, token, False)
                 self.on_other(False)
         elif self.token.understands(token):
             self._meet(token)
             self.others[gid] = token
+            self.on_match(gid, token, True)
             self.on_other(True)
         else:
             if self.warns:  # logged here, on the graph's thread: a program that only publishes never spins

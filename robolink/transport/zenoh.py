@@ -193,7 +193,10 @@ class ZenohTransport(Transport):
     def attachment(self, arrived: Any) -> bytes:
         """Return the attachment of an item of a subscription's sink, without copying the payload."""
         attachment = arrived.attachment
-        return b"" if attachment is None else attachment.to_bytes()
+        if attachment is None:
+            return b""
+        plain: bytes = attachment if type(arrived) is Sample else attachment.to_bytes()  # a Sample is of this session
+        return plain
 
     def accept(self, arrived: Any) -> Query:
         """Convert an item of a server's sink to a Query. Raises OverwrittenError, and ends the call, as `read` does."""

@@ -1,5 +1,6 @@
 """rmw_zenoh's wire format: keys of topics and services, tokens of the graph, attachments."""
 
+from robolink.wire.assertions import assertion_pattern, format_assertion, parse_assertion
 from robolink.wire.attachment import (
     GID_BYTES,
     Attachment,
@@ -58,12 +59,14 @@ __all__ = [
     "EndpointToken",
     "NodeToken",
     "answer_to",
+    "assertion_pattern",
     "attachments",
     "bridge_pattern",
     "buffer_key",
     "check_attachment",
     "fields_of",
     "demangle_type",
+    "format_assertion",
     "format_bridge",
     "format_key",
     "format_qos",
@@ -79,6 +82,7 @@ __all__ = [
     "own_tokens",
     "pack_attachment",
     "pair_opener",
+    "parse_assertion",
     "parse_bridge",
     "parse_key",
     "parse_qos",
