@@ -151,7 +151,7 @@ class ActionClient(Waitable):
         self._statuses: dict[bytes, int] = {}
         self._lane = next_number()
         self._parts: list[Client | Subscription[Any]] = []
-        self._asked: dict[Future[Any], None] = {}
+        self._open_futures: dict[Future[Any], None] = {}
         """Futures that are not done."""
         try:
             self._declare_topics(feedback_sub_qos_profile, status_sub_qos_profile)
@@ -354,7 +354,7 @@ class ActionClient(Waitable):
         future: Future[Any] = Future(executor=self._node._loop_)
 
         def pass_on() -> None:
-            self._asked.pop(future, None)
+            self._open_futures.pop(future, None)
             if future.over():
                 return
             future.set_executor(self._node._loop_)  # there may not have been one before
@@ -365,11 +365,11 @@ class ActionClient(Waitable):
                 future.set_exception(reason)
 
         def give_up() -> None:
-            self._asked.pop(future, None)
+            self._open_futures.pop(future, None)
             if future.cancelled():
                 client.remove_pending_request(response)
 
-        self._asked[future] = None
+        self._open_futures[future] = None
         response.when_done(pass_on)
         future.when_done(give_up)
         return future
@@ -439,7 +439,7 @@ class ActionClient(Waitable):
         """Destroy the client: futures under way are never done; of an AsyncNode they are cancelled."""
         for part in self._parts:
             part.destroy()
-        for future in list(self._asked):
+        for future in list(self._open_futures):
             self._node._abandon_(future)
         self._node.remove_waitable(self)
 
