@@ -54,7 +54,8 @@ class Pace:
         """Wake what waits in a program's code; raise the error where its main thread waits."""
         for runner in self.scheduler.runners.waiting(program):
             assert runner.wait is not None
-            if runner.is_host and runner.wait.inbox is None:
+            inbox = runner.wait.inbox
+            if runner.is_host and (inbox is None or not inbox.is_executors):
                 if error is None:
                     continue  # its handler has done all that there was to do: a wait goes on
                 runner.wait.error = error

@@ -15,8 +15,10 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from types import ModuleType
 from typing import Any, Protocol
+from weakref import WeakSet
 
 from robolink.exceptions import RobolinkError
+from robolink.host.real_waits import RealWaits
 from robolink.running.defaults import Defaults, use_defaults
 from robolink.running.inbox import Inbox
 from robolink.running.timebase import TimeBase, VirtualTime
@@ -69,6 +71,8 @@ class ProgramLike(Protocol):
     """Its ``__main__``, if it is a script."""
     handlers: dict[int, Any]
     """Its handlers of signals, by number."""
+    loops: WeakSet[Any]
+    """Its event loops of asyncio."""
     contexts: list[Any]
     has_begun: bool
     has_waited: bool
@@ -122,6 +126,7 @@ class SchedulerLike(Protocol):
     outside: Runner
     defaults: Defaults
     time: VirtualTime
+    real_waits: RealWaits
 
     @property
     def view(self) -> ViewLike:
@@ -271,8 +276,10 @@ class _Place:
 class HostedInbox(Inbox):
     """Inbox of an executor in a host: what arrives is delivered at once, and schedules the executor."""
 
-    def __init__(self, due: deque[Any]) -> None:
+    def __init__(self, due: deque[Any], *, is_executors: bool = True) -> None:
         self.lock = threading.RLock()
+        self.is_executors = is_executors
+        """True if who waits here is an executor, which looks by itself whether its program was interrupted."""
         self.is_free = False
         """True while the host may run a callback of the executor: somebody spins it, and no callback is under way."""
         self.waiter: Wait | None = None

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any, Literal, Protocol
+from weakref import WeakSet
 
 from robolink.arguments.command_line import parse_arguments
 from robolink.context import Context
@@ -111,6 +112,8 @@ class Program:
         """Runs the callbacks of its Node classes; None in a script, and before they are made."""
         self.has_waited = False
         """True once its code has waited for something since it began."""
+        self.loops: WeakSet[Any] = WeakSet()
+        """Its event loops of asyncio."""
         self.handlers: dict[int, Any] = {}
         """Handlers that it has given to `signal.signal`, by number."""
         self.is_script = self._is_ending = False
@@ -143,7 +146,7 @@ class Program:
         self.state, self.error, self.returncode = "waiting", None, None
         self._made, self.contexts, self.driver = [], [], None
         self.is_script = self._is_ending = False
-        self.handlers = {}
+        self.handlers, self.loops = {}, WeakSet()
         self.has_waited = self.has_begun = False
         self.argv = list(self.parts[0].argv)
         self.main_module = None
@@ -246,6 +249,11 @@ class Program:
             self._try(node.destroy_node)
         for context in list(self.contexts):
             self._try(context.try_shutdown)
+        self._abandon_loops()
+
+    def _abandon_loops(self) -> None:
+        for loop in self.loops:
+            loop.abandon()
 
     def _try(self, act: Callable[[], Any]) -> None:
         try:
@@ -264,6 +272,7 @@ class Program:
             self.driver.withdraw()
         for context in self.contexts:
             abandon(context)
+        self._abandon_loops()
         self.host.pace.unwind(self)
         self.host.note_exit(self)
 

@@ -20,6 +20,7 @@ from robolink.host.background_threads import BackgroundThreads
 from robolink.host.call_sites import name_of, where_is, where_waits
 from robolink.host.participants import CALLBACKS, OUTSIDE, HostedInbox, HostError, Job, Killed, Runner, Runners, Wait
 from robolink.host.patches.environment import ProcessView
+from robolink.host.real_waits import RealWaits
 from robolink.host.threads import Worker, end_thread, tell_of
 from robolink.running.defaults import get_defaults
 from robolink.running.timebase import VirtualTime
@@ -57,6 +58,7 @@ class Scheduler:
         self.defaults = get_defaults()
         self.view = ProcessView()
         self.background = BackgroundThreads()
+        self.real_waits = RealWaits()
         self.failure: BaseException | None = None
         self.serial = itertools.count()
         self._waits: dict[Wait, None] = {}
@@ -105,8 +107,9 @@ class Scheduler:
             self._waits.pop(wait, None)
             if inbox is not None and inbox.waiter is wait:
                 inbox.waiter = None
-        if wait.error is not None:
-            raise wait.error
+        error, wait.error = wait.error, None  # else it would keep all these frames until the wait's moment
+        if error is not None:
+            raise error
 
     def _note(self, wait: Wait, until: int | None) -> None:
         is_outside = wait.runner is self.outside
@@ -273,7 +276,21 @@ class Scheduler:
     def _is_news(self) -> bool:
         """Return True if threads that take no turns have brought something to do."""
         is_answered = self._asking is not None and self._asking.is_over()
-        return is_answered or bool(self.due or self._foreign) or any(map(Wait.is_over, self._waits))
+        has_more = self.failure is not None or bool(self.due or self._foreign)
+        return is_answered or has_more or any(map(Wait.is_over, self._waits))
+
+    def until_next(self) -> int | None:
+        """Return the nanoseconds to the next moment that somebody waits for; None if nobody does."""
+        heap = self.heap
+        while heap and heap[0][4].version != heap[0][3]:
+            heappop(heap)
+        return heap[0][0] - self.time._now if heap else None
+
+    def pass_time(self, nanoseconds: int) -> bool:
+        """Move time by so much, as real time has. Return True if there is something to do."""
+        self.time._now += nanoseconds
+        self.picks += 1  # for the watchdog: the host does go on
+        return self._is_news()
 
     def fail(self, error: BaseException) -> None:
         """Raise this error in the thread that runs the host."""
@@ -334,6 +351,8 @@ class Scheduler:
         if self._waits:
             self.due.extend(itertools.islice(filter(Wait.is_over, self._waits), 1))
         if self.due or (self.background.threads and self.background.go_on(self._is_news)):
+            return None
+        if self.real_waits.waiting and self.real_waits.go_on(self):
             return None
         heap, time = self.heap, self.time
         while heap:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pkgutil
 import threading
 import types
+from collections.abc import Iterator
 from typing import Any
 
 from robolink.host.patches import clocks, entropy, event_loops, locks, processes, threads
@@ -61,9 +62,13 @@ def _replace(owner: Any, name: str, replacement: Any) -> None:
     setattr(owner, name, replacement)
 
 
+def _imported() -> Iterator[tuple[Any, Any]]:
+    yield from (*clocks.imported(), *locks.imported(), *event_loops.imported())
+
+
 def adopt(module: types.ModuleType | None) -> None:
     """Replace also the names that a module imported before there was a host: ``from time import sleep``."""
-    replaced = {id(real): replacement for real, replacement in (*clocks.imported(), *locks.imported())}
+    replaced = {id(real): replacement for real, replacement in _imported()}
     for name, value in list(vars(module).items()) if module is not None else ():
         if id(value) in replaced:
             with _counting:

@@ -52,11 +52,19 @@ def _start(thread: threading.Thread) -> None:
     try:
         if isinstance(thread, Worker):
             return _real_start(thread)
+        if _awaits_process(thread):
+            _real_start(thread)
+            return program.host.scheduler.real_waits.add_thread(thread, program)
         if getattr(getattr(thread, "_target", None), "__module__", "") == pools.__name__:
             locks.work_in_turns(thread)
         return take_part(thread, program, _real_start)
     finally:
         runner.is_real = False
+
+
+def _awaits_process(thread: threading.Thread) -> bool:
+    """Return True for a thread in which asyncio waits for the end of a process."""
+    return getattr(getattr(thread, "_target", None), "__qualname__", "").endswith("ThreadedChildWatcher._do_waitpid")
 
 
 def _join(thread: threading.Thread, timeout: float | None = None) -> None:
