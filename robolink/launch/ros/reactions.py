@@ -255,11 +255,11 @@ class Reactions(Generic[T]):
             self._requests += [Signal(name, int(event.signal)) for name in self._meant(event)]
         elif isinstance(event, process_events.ShutdownProcess):
             self._requests += [Stop(name) for name in self._meant(event)]
-        elif isinstance(event, events.IncludeLaunchDescription):
-            self._visit.run([event.launch_description])
         elif isinstance(event, ChangeState):
             self._change(event)
         self._handle(event)
+        if isinstance(event, events.IncludeLaunchDescription):  # its own handlers come too late for this event
+            self._visit.run([event.launch_description])
 
     def _outlive(self, event: events.Shutdown) -> None:
         """End the launch as a LaunchService does: no process is started any more, and few timers go on."""

@@ -26,10 +26,10 @@ from robolink.launch.ros.launch.bases import LaunchContext, LaunchError
 from robolink.launch.ros.launch.conditions import evaluate_condition_expression
 from robolink.launch.ros.launch.events import Shutdown
 from robolink.launch.ros.launch.processes import ExecuteLocal
+from robolink.launch.ros.launch.signals import AsyncSafeSignalManager
 from robolink.launch.ros.launch.utilities import perform_substitutions
 from robolink.launch.ros.output import Output
 from robolink.launch.ros.reactions import Reactions
-from robolink.launch.ros.signals import AsyncSafeSignalManager
 from robolink.launch.ros.visit import Visit
 from robolink.supervisor import Process, Supervisor
 from robolink.supervisor.director import End, Request, Signal, Stop, Tell
@@ -64,7 +64,8 @@ class Runner:
         self._supervision: _Supervision | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._interrupted: Shutdown | None = None
-        self._is_due = False
+        self._to_restart: dict[str, None] = {}
+        """Names of the processes that have ended and are to be started again."""
         self._code = 0
 
     async def run(self, *, shutdown_when_idle: bool) -> int:
@@ -202,7 +203,9 @@ class Runner:
             return []
         event = self._reactions.shutdown_event
         is_interrupted = event.due_to_sigint and not self._context.noninteractive and event is not self._interrupted
-        return [Stop(name, is_interrupted) for name in self._reactions.alive]
+        for name in self._to_restart:
+            self._complete(name)
+        return [Stop(name, is_interrupted) for name in (*self._reactions.alive, *self._to_restart)]
 
     def _fail(self, reason: str) -> None:
         text = f"Caught exception in launch: {reason}"
@@ -273,6 +276,7 @@ class Runner:
 
     def started(self, name: str, pid: int) -> None:
         """Handle that a process runs."""
+        self._to_restart.pop(name, None)
         self._log(name).info(f"process started with pid [{pid}]")
         self.take(self._reactions.started(name, pid, self.now))
         if self._context.is_shutdown:  # it was requested before the end, and started behind it
@@ -295,8 +299,16 @@ class Runner:
         else:
             self._log(name).error("the process cannot be started")
         if is_over:
+            self._to_restart.pop(name, None)
             action.complete()
+        else:
+            self._to_restart[name] = None
         self._woken.set()
+
+    def _complete(self, name: str) -> None:
+        action = self._reactions.action_of(name)
+        if action is not None:
+            action.complete()
 
     def _tell_end(self, action: ExecuteLocal, name: str, returncode: int) -> None:
         details = action.process_details or {}

@@ -205,6 +205,8 @@ def no_argument(cls: type, name: str) -> LaunchArgumentError:
 
 
 SomeEntitiesType: TypeAlias = "LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]"
+SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
+"""The same for `isinstance`."""
 SomeActionsType = SomeEntitiesType
 
 

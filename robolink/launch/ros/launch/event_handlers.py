@@ -9,20 +9,32 @@ from robolink.launch.ros.launch.bases import (
     Action,
     BaseEventHandler,
     Event,
+    LaunchArgumentError,
     LaunchContext,
     LaunchDescriptionEntity,
     SomeEntitiesType,
+    check_actions,
     entities_in,
 )
-from robolink.launch.ros.launch.events import ExecutionComplete, ProcessExited, ProcessIO, ProcessStarted, Shutdown
+from robolink.launch.ros.launch.events import (
+    ExecutionComplete,
+    IncludeLaunchDescription,
+    ProcessExited,
+    ProcessIO,
+    ProcessStarted,
+    Shutdown,
+)
+from robolink.launch.ros.launch.processes import ExecuteLocal
 
 __all__ = [
     "OnActionEventBase",
     "OnExecutionComplete",
+    "OnIncludeLaunchDescription",
     "OnProcessExit",
     "OnProcessIO",
     "OnProcessStart",
     "OnShutdown",
+    "event_named",
 ]
 
 
@@ -65,16 +77,36 @@ class OnActionEventBase(_Reacting):
         target_action_cls: type[Action] = Action,
         handle_once: bool = False,
     ) -> None:
-        self._target, self._kind, self._reaction = action_matcher, target_event_cls, on_event
+        is_matcher = isinstance(action_matcher, target_action_cls) or callable(action_matcher)
+        if action_matcher is not None and not is_matcher:
+            kind, wanted = type(action_matcher).__name__, target_action_cls.__name__
+            raise LaunchArgumentError(
+                f"{type(self).__name__} reacts to an {wanted} or what a function means, got {kind}"
+            )
+        if not callable(on_event):
+            check_actions(on_event, type(self).__name__)
+        self._target, self._kind, self._target_kind = action_matcher, target_event_cls, target_action_cls
+        self._reaction = on_event if callable(on_event) else entities_in(on_event)
         super().__init__(matcher=self._is_meant, handle_once=handle_once)
+
+    @property
+    def handler_description(self) -> str:
+        """Description of what is done, for people."""
+        return str(self._reaction) if callable(self._reaction) else "<actions>"
+
+    @property
+    def matcher_description(self) -> str:
+        """Description of the events that are meant, for people."""
+        which = "" if self._target is None else f" and {self._target_kind.__name__}(event.action)"
+        return f"event == {self._kind.__name__}{which}"
 
     def _is_meant(self, event: Event) -> bool:
         if not isinstance(event, self._kind):
             return False
         action = getattr(event, "action", None)
-        if self._target is None or isinstance(self._target, Action):
-            return self._target is None or action is self._target
-        return bool(self._target(action))
+        if callable(self._target):
+            return bool(self._target(action))
+        return self._target is None or action is self._target
 
 
 class OnProcessStart(OnActionEventBase):
@@ -87,7 +119,13 @@ class OnProcessStart(OnActionEventBase):
     """
 
     def __init__(self, *, target_action: Target = None, on_start: Reaction, **kwargs: Any) -> None:
-        super().__init__(action_matcher=target_action, on_event=on_start, target_event_cls=ProcessStarted, **kwargs)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_start,
+            target_event_cls=ProcessStarted,
+            target_action_cls=ExecuteLocal,
+            **kwargs,
+        )
 
 
 class OnProcessExit(OnActionEventBase):
@@ -100,7 +138,13 @@ class OnProcessExit(OnActionEventBase):
     """
 
     def __init__(self, *, target_action: Target = None, on_exit: Reaction, **kwargs: Any) -> None:
-        super().__init__(action_matcher=target_action, on_event=on_exit, target_event_cls=ProcessExited, **kwargs)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_exit,
+            target_event_cls=ProcessExited,
+            target_action_cls=ExecuteLocal,
+            **kwargs,
+        )
 
 
 class OnExecutionComplete(OnActionEventBase):
@@ -139,11 +183,52 @@ class OnProcessIO(OnActionEventBase):
         **kwargs: Any,
     ) -> None:
         self._by_fd = {0: on_stdin, 1: on_stdout, 2: on_stderr}
-        super().__init__(action_matcher=target_action, on_event=self._heard, target_event_cls=ProcessIO, **kwargs)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=self._heard,
+            target_event_cls=ProcessIO,
+            target_action_cls=ExecuteLocal,
+            **kwargs,
+        )
 
     def _heard(self, event: ProcessIO, _: LaunchContext) -> SomeEntitiesType | None:
         reaction = self._by_fd.get(event.fd)
         return None if reaction is None else reaction(event)
+
+
+class OnIncludeLaunchDescription(BaseEventHandler):
+    """Reaction to the request to carry out a launch description: that follows.
+
+    The launcher does so by itself; this is for a program that does it at a time of its own.
+
+    Args:
+        **kwargs: `handle_once`.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(matcher=lambda event: isinstance(event, IncludeLaunchDescription), **kwargs)
+
+    def handle(self, event: Event, context: LaunchContext) -> SomeEntitiesType | None:
+        """Return the description of `event`."""
+        super().handle(event, context)
+        assert isinstance(event, IncludeLaunchDescription)
+        found: LaunchDescriptionEntity = event.launch_description
+        return found
+
+    @property
+    def handler_description(self) -> str:
+        """Description of what is done, for people."""
+        return "the launch description of the event"
+
+    @property
+    def matcher_description(self) -> str:
+        """Description of the events that are meant, for people."""
+        return "event is a launch.events.IncludeLaunchDescription"
+
+
+def event_named(name: str) -> Callable[[Event], bool]:
+    """Return a function that is true for an event with this name, such as `launch.events.Shutdown`."""
+    return lambda event: event.name == name
 
 
 class OnShutdown(_Reacting):

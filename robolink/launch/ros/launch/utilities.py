@@ -14,18 +14,22 @@ from robolink.arguments.parameter_file import parse_scalar
 from robolink.launch.ros.launch.bases import (
     LaunchArgumentError,
     LaunchContext,
+    LaunchDescriptionEntity,
     LaunchError,
+    SomeEntitiesType,
     SomeSubstitutionsType,
     Substitution,
     entities_in,
 )
+from robolink.launch.ros.launch.signals import AsyncSafeSignalManager
 from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
-    pass
+    import asyncio
 
 
 __all__ = [
+    "AsyncSafeSignalManager",
     "LaunchArgumentError",
     "TextSubstitution",
     "ensure_argument_type",
@@ -33,10 +37,12 @@ __all__ = [
     "is_a_subclass",
     "is_substitution",
     "is_true",
+    "isclassinstance",
     "normalize_to_list_of_entities",
     "normalize_to_list_of_substitutions",
     "perform_substitutions",
     "performed",
+    "visit_all_entities_and_collect_futures",
 ]
 
 
@@ -45,7 +51,10 @@ MOST_TEXT = 1_000_000
 TRUE, FALSE = ("true", "1"), ("false", "0")
 """Spellings of a boolean."""
 
-normalize_to_list_of_entities = entities_in
+
+def normalize_to_list_of_entities(entities: Iterable[SomeEntitiesType]) -> list[LaunchDescriptionEntity]:
+    """Return entities, of which some may be lists of such, as one list."""
+    return [each for some in entities for each in entities_in(some)]
 
 
 class TextSubstitution(Substitution):
@@ -130,14 +139,32 @@ def ensure_argument_type(argument: Any, types: Any, argument_name: str, caller: 
         raise LaunchArgumentError(f"{where}'{argument_name}' is {names}, got {_kind(argument)}")
 
 
+def isclassinstance(obj: Any) -> bool:
+    """Return whether `obj` has a class, as all that Python 3 has."""
+    return hasattr(obj, "__class__")
+
+
 def is_a(obj: Any, entity_type: type) -> bool:
     """Return whether `obj` is an `entity_type`."""
     return isinstance(obj, entity_type)
 
 
 def is_a_subclass(obj: Any, entity_type: type) -> bool:
-    """Return whether `obj` is a class below `entity_type`."""
-    return isinstance(obj, type) and issubclass(obj, entity_type)
+    """Return whether `obj` is an `entity_type`, or a class of such."""
+    return isinstance(obj, entity_type) or (isinstance(obj, type) and issubclass(obj, entity_type))
+
+
+def visit_all_entities_and_collect_futures(
+    entity: LaunchDescriptionEntity, context: LaunchContext
+) -> list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]]:
+    """Visit `entity` in `context`, and what that brings along, depth first; return those that have a future, and it.
+
+    A LaunchService visits by itself, and starts what it visits; this starts nothing.
+    """
+    inside = entity.visit(context)
+    future = entity.get_asyncio_future()
+    own = [] if future is None else [(entity, future)]
+    return [*own, *(pair for each in inside or () for pair in visit_all_entities_and_collect_futures(each, context))]
 
 
 def is_substitution(value: Any) -> bool:
