@@ -291,18 +291,19 @@ class Runner:
         """Handle that a process has ended; `is_over` unless it is started again."""
         action = self._reactions.action_of(name)
         assert action is not None
-        has_run = name in self._reactions.alive
-        if has_run:
+        if not is_over:
+            self._to_restart[name] = None
+        if name in self._reactions.alive:
             self._outputs[name].flush()
             self._tell_end(action, name, returncode)
             self.take(self._reactions.exited(name, returncode, self.now))
         else:
             self._log(name).error("the process cannot be started")
-        if is_over:
+        if not is_over and self._context.is_shutdown:
+            self._supervised().request([Stop(name)])
             self._to_restart.pop(name, None)
+        if name not in self._to_restart:
             action.complete()
-        else:
-            self._to_restart[name] = None
         self._woken.set()
 
     def _complete(self, name: str) -> None:

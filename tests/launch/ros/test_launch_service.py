@@ -180,8 +180,12 @@ def test_events_come_from_any_thread_and_wait_while_it_does_not_run() -> None:
 
 def test_an_error_ends_the_launch_with_1_and_names_the_line(capsys: pytest.CaptureFixture[str]) -> None:
     seen: list[str] = []
+
+    def fail(context: LaunchContext) -> None:
+        raise ZeroDivisionError("here")
+
     at_end = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: seen.append(event.reason)))
-    assert ran(at_end, OpaqueFunction(function=lambda context: 1 / 0)) == 1
+    assert ran(at_end, OpaqueFunction(function=fail)) == 1
     assert "ZeroDivisionError" in seen[0]
     assert "[ERROR] [launch]: Caught exception in launch: " in capsys.readouterr().out
 
@@ -221,6 +225,14 @@ def test_it_runs_once_at_a_time() -> None:
         assert ending is not None
         await ending
         assert await task == 0
+
+    asyncio.run(main())
+
+
+def test_run_in_a_running_loop_names_run_async() -> None:
+    async def main() -> None:
+        with pytest.raises(LaunchError, match=r"await run_async\(\)"):
+            LaunchService().run()
 
     asyncio.run(main())
 
@@ -285,6 +297,20 @@ def test_two_services_run_one_after_the_other() -> None:
 
 
 @pytest.mark.processes
+def test_a_process_is_started_again_until_the_launch_ends() -> None:
+    codes: list[int] = []
+
+    def note(event: ProcessExited, context: LaunchContext) -> Shutdown | None:
+        codes.append(event.returncode)
+        return Shutdown() if len(codes) == 3 else None
+
+    again = python("raise SystemExit(4)", respawn=True, on_exit=note)
+    assert ran(again, python("raise SystemExit(5)", respawn=True, respawn_max_retries=1, on_exit=note)) == 0
+    assert codes.count(5) <= 2
+    assert len(codes) < 6
+
+
+@pytest.mark.processes
 def test_an_environment_arrives_and_what_is_kept_can_be_read() -> None:
     code = "import os; print(os.environ.get('GIVEN'), os.environ.get('ROBOLINK_TEST_SET'), flush=True)"
     whole = python(code, env={"GIVEN": "1"}, cached_output=True)
@@ -319,9 +345,11 @@ def test_a_program_that_says_ctrl_c_has_interrupted_its_processes() -> None:
     def note(event: ProcessExited, context: LaunchContext) -> None:
         codes.append(event.returncode)
 
+    def end(event: Event) -> EmitEvent:
+        return EmitEvent(event=ShutdownEvent(reason="none", due_to_sigint=True))
+
     for noninteractive in (True, False):
-        process = python("input()", sigterm_timeout="0.2", on_exit=note)
-        end = EmitEvent(event=ShutdownEvent(reason="none", due_to_sigint=True))
-        started = RegisterEventHandler(OnProcessStart(target_action=process, on_start=[end]))
-        assert ran(process, started, noninteractive=noninteractive) == 0
+        process = python("print('here', flush=True); input()", sigterm_timeout="0.2", on_exit=note)
+        begun = OnProcessIO(target_action=process, on_stdout=end)
+        assert ran(process, RegisterEventHandler(begun), noninteractive=noninteractive) == 0
     assert codes == [-signal.SIGINT, -signal.SIGTERM]

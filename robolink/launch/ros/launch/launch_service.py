@@ -70,9 +70,13 @@ class LaunchService:
             0, or 1 after an error of the launch or at SIGTERM. What the processes return counts nothing.
 
         Raises:
-            RuntimeError: if the loop of this thread runs already: `await run_async()` there.
+            LaunchError: (a RuntimeError) if a loop of asyncio runs in this thread: `await run_async()` there.
         """
-        loop, is_own = _loop_of_thread()
+        import asyncio
+
+        if _is_in_loop():
+            raise LaunchError("a loop of asyncio runs in this thread already: `await run_async()` there")
+        loop = asyncio.new_event_loop()
         try:
             task = loop.create_task(self.run_async(shutdown_when_idle=shutdown_when_idle))
             while True:
@@ -81,8 +85,7 @@ class LaunchService:
                 except KeyboardInterrupt:  # one that comes before or after its own handlers are there
                     continue
         finally:
-            if is_own:
-                loop.close()
+            _close(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
         """Run until all has ended; arguments and result are those of `run`. Raises LaunchError if it runs already."""
@@ -134,15 +137,26 @@ class _Done(Coroutine[Any, Any, None]):
         """Do nothing."""
 
 
-def _loop_of_thread() -> tuple[asyncio.AbstractEventLoop, bool]:
-    """Return the event loop of this thread, or else a new one and True."""
+def _is_in_loop() -> bool:
+    """Return whether a loop of asyncio runs in this thread."""
     import asyncio
-    import warnings
 
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)
-            loop = asyncio.get_event_loop()
-    except RuntimeError:  # this thread has none
-        return asyncio.new_event_loop(), True
-    return (asyncio.new_event_loop(), True) if loop.is_closed() else (loop, False)
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True
+
+
+def _close(loop: asyncio.AbstractEventLoop) -> None:
+    """Close a loop, after the end of all tasks that are left there."""
+    import asyncio
+
+    left = asyncio.all_tasks(loop)
+    for each in left:
+        each.cancel()
+    if left:
+        loop.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+    loop.run_until_complete(loop.shutdown_asyncgens())
+    loop.run_until_complete(loop.shutdown_default_executor())
+    loop.close()
