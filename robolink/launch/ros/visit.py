@@ -417,8 +417,7 @@ def _help(declared: DeclareLaunchArgument, context: LaunchContext) -> ArgumentHe
         except (LaunchError, DocumentError):
             default = "".join(getattr(each, "text", each.describe()) for each in declared.default_value)
         context.launch_configurations.setdefault(declared.name, default)
-    description = "" if declared.description == DeclareLaunchArgument.NO_DESCRIPTION else declared.description
-    return ArgumentHelp(declared.name, default, description, tuple(declared.choices or ()))
+    return ArgumentHelp(declared.name, default, declared.about, tuple(declared.choices or ()))
 
 
 def _note_unread(context: LaunchContext, given: Mapping[str, str]) -> None:

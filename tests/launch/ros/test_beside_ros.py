@@ -214,6 +214,7 @@ def _marked(description: Description) -> Any:
 
 
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:LaunchConfiguration(Not)?Equals is deprecated")  # there, too
 @pytest.mark.parametrize("description", [_marked(each) for each in descriptions()])
 def test_a_description_does_what_it_does_in_ros(description: Description, here: Path, context: Context) -> None:
     found = _differences(description, here, context)

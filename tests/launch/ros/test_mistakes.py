@@ -75,7 +75,7 @@ ACTIONS = [
     ("LogInfo(msg=PythonExpression(['1+']))", "the expression '1+' fails: SyntaxError: "),
     ("LogInfo(msg=3)", "expected a text or a substitution, got int (3)"),
     ("DeclareLaunchArgument('must')", "'must' must be given: must:=VALUE"),
-    ("DeclareLaunchArgument('a', default_value='x', choices=['y', 'z'])", "'a' is one of y, z, got 'x'"),
+    ("DeclareLaunchArgument('a', default_value='x', choices=['y', 'z'])", "'a': the default 'x' is not in"),
     ("LogInfo(msg='', condition=IfCondition('maybe'))", "expected true, false, 1 or 0, got 'maybe'"),
     ("IncludeLaunchDescription(ThisLaunchFile())", "a launch file cannot include itself: bot.launch.py -> bot."),
     ("IncludeLaunchDescription([ThisLaunchFileDir(), '/b.launch.py'])", "there is no launch file {launch}/b.launch.py"),

@@ -22,6 +22,7 @@ from robolink.launch.ros.launch.lines import Log, LogDebug, LogError, LogInfo, L
 from robolink.launch.ros.launch.processes import ExecuteLocal, ExecuteProcess
 from robolink.launch.ros.launch.settings import (
     AppendEnvironmentVariable,
+    DeclareBooleanLaunchArgument,
     DeclareLaunchArgument,
     PopEnvironment,
     PopLaunchConfigurations,
@@ -35,6 +36,7 @@ from robolink.launch.ros.launch.settings import (
     UnsetLaunchConfiguration,
 )
 from robolink.launch.ros.launch.sources import IncludeLaunchDescription
+from robolink.launch.ros.launch.substitutions import FOR_EACH
 from robolink.launch.ros.launch.utilities import (
     LaunchArgumentError,
     normalize_to_list_of_substitutions,
@@ -47,6 +49,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AppendEnvironmentVariable",
+    "DeclareBooleanLaunchArgument",
     "DeclareLaunchArgument",
     "EmitEvent",
     "ExecuteLocal",
@@ -257,6 +260,32 @@ class ForLoop(Action):
             raise LaunchError(f"{_LENGTH}, got one below")
         _check_count(length)
         return [each for number in range(length) for each in self.function(number) or ()]
+
+
+class Iteration(Action):
+    """Actions of one iteration of a loop in XML or YAML.
+
+    Args:
+        actions: The actions.
+        values: Values of the iteration, which ForEachVar and ForLoopIndex read.
+    """
+
+    def __init__(self, actions: Iterable[LaunchDescriptionEntity], values: Mapping[str, Any]) -> None:
+        super().__init__()
+        self._actions, self._values = list(actions), dict(values)
+
+    def execute(self, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """Set the values as locals of `context`; return the actions, and what removes the values behind them."""
+        context._push_locals()
+        context.extend_locals({FOR_EACH + name: str(value) for name, value in self._values.items()})
+        return [*self._actions, _IterationEnd()]
+
+
+class _IterationEnd(Action):
+    """Remove the values of an iteration."""
+
+    def execute(self, context: LaunchContext) -> None:
+        context._pop_locals()
 
 
 def _checked(function: Function) -> Function:

@@ -59,11 +59,20 @@ class Substitution:
 
     def describe(self) -> str:
         """Return a description for people."""
-        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in vars(self).items())})"
+        return f"{type(self).__name__}({', '.join(map(described, vars(self).values()))})"
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text, with the values of `context`."""
         raise NotImplementedError(f"{type(self).__name__} has no perform()")
+
+
+def described(value: Any) -> str:
+    """Return a description for people of a `value` that a substitution has, which may be made of others."""
+    if isinstance(value, Substitution):
+        return value.describe()
+    if isinstance(value, list) and value and all(isinstance(each, Substitution) for each in value):
+        return " + ".join(each.describe() for each in value)
+    return f"[{', '.join(map(described, value))}]" if isinstance(value, list) else repr(value)
 
 
 SomeSubstitutionsType: TypeAlias = "str | os.PathLike[str] | Substitution | Iterable[str | Substitution]"

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+
 from robolink.launch.ros.launch.bases import Condition, LaunchContext, LaunchError, SomeSubstitutionsType
-from robolink.launch.ros.launch.utilities import is_true, normalize_to_list_of_substitutions, perform_substitutions
+from robolink.launch.ros.launch.utilities import (
+    is_true,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+    performed,
+)
 
 __all__ = [
     "IfCondition",
@@ -16,12 +23,19 @@ __all__ = [
 
 
 class InvalidConditionExpressionError(LaunchError):
-    """A condition is neither true nor false; robolink's conditions raise LaunchError."""
+    """A condition is neither true nor false."""
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: SomeSubstitutionsType) -> bool:
-    """Return the decision of a text, `expression`, with the values of `context`. Raises LaunchError."""
-    return is_true(context, expression)
+    """Return the decision of a text, `expression`, with the values of `context`.
+
+    Raises InvalidConditionExpressionError for another text than true, false, 1 and 0.
+    """
+    text = performed(context, expression)
+    try:
+        return is_true(context, text)
+    except LaunchError as error:
+        raise InvalidConditionExpressionError(str(error)) from None
 
 
 class IfCondition(Condition):
@@ -33,7 +47,7 @@ class IfCondition(Condition):
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
-        super().__init__(predicate=lambda context: is_true(context, self._expression))
+        super().__init__(predicate=lambda context: evaluate_condition_expression(context, self._expression))
 
 
 class UnlessCondition(Condition):
@@ -45,11 +59,11 @@ class UnlessCondition(Condition):
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         self._expression = normalize_to_list_of_substitutions(predicate_expression)
-        super().__init__(predicate=lambda context: not is_true(context, self._expression))
+        super().__init__(predicate=lambda context: not evaluate_condition_expression(context, self._expression))
 
 
 class LaunchConfigurationEquals(Condition):
-    """True if a launch configuration has a value.
+    """True if a launch configuration has a value; deprecated, as in ROS 2: it warns.
 
     Args:
         launch_configuration_name: Name of the configuration.
@@ -57,6 +71,8 @@ class LaunchConfigurationEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
+        instead = "use IfCondition(EqualsSubstitution(...)), IfCondition(NotEqualsSubstitution(...))"
+        warnings.warn(f"{type(self).__name__} is deprecated: {instead}", UserWarning, stacklevel=2)
         self._name = launch_configuration_name
         self._value = None if expected_value is None else normalize_to_list_of_substitutions(expected_value)
         super().__init__(predicate=self._is_equal)

@@ -277,6 +277,13 @@ class ExecuteProcess(ExecuteLocal):
         executable = Executable(cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env)
         super().__init__(process_description=executable, **kwargs)
 
+    @classmethod
+    def _parse_cmdline(cls, cmd: str, parser: Any) -> list[list[Substitution]]:
+        """Return the words of a command line in XML or YAML: `parse` of programs' own classes calls it, too."""
+        from robolink.launch.ros.launch.frontend.parse_substitution import words_of
+
+        return words_of(parser.parse_substitution(cmd))
+
     @property
     def cmd(self) -> list[list[Substitution]]:
         """The program and its arguments."""

@@ -117,9 +117,22 @@ class DeclareLaunchArgument(Action):
         **kwargs: Any,
     ) -> None:
         super().__init__(**kwargs)
-        self.name, self.description = name, description or self.NO_DESCRIPTION
+        self.name, self.about = name, description or ""
         self.default_value = None if default_value is None else normalize_to_list_of_substitutions(default_value)
         self.choices = None if choices is None else list(choices)
+        if self.choices is not None and isinstance(default_value, str) and default_value not in self.choices:
+            raise LaunchError(
+                f"'{name}': the default '{shown(default_value)}' is not in provided choices {self.choices}"
+            )
+
+    @property
+    def description(self) -> str:
+        """Description for people, with the choices."""
+        if self.choices is None:
+            return self.about or self.NO_DESCRIPTION
+        if not self.about:
+            return f"One of: {self.choices}"
+        return f"{self.about.removesuffix('.')}. Valid choices are: {self.choices}"
 
     def execute(self, context: LaunchContext) -> None:
         """Set the default value in `context` if none was given; raises LaunchError for a value that is not a choice."""
@@ -127,13 +140,28 @@ class DeclareLaunchArgument(Action):
         context.requested.add(self.name)
         if self.name not in known:
             if self.default_value is None:
-                about = "" if self.description == self.NO_DESCRIPTION else f" ({shown(self.description)})"
+                about = f" ({shown(self.about)})" if self.about else ""
                 raise LaunchError(f"'{self.name}' must be given{about}: {self.name}:=VALUE")
             known[self.name] = perform_substitutions(context, self.default_value)
         value = known[self.name]
         if self.choices is not None and value not in self.choices:
             allowed = ", ".join(self.choices)
             raise LaunchError(f"'{self.name}' is one of {allowed}, got '{shown(value)}'{nearest(value, self.choices)}")
+
+
+class DeclareBooleanLaunchArgument(DeclareLaunchArgument):
+    """Launch argument that is true or false.
+
+    Args:
+        name: Name of the argument.
+        default_value: Value where none is given; without one it must be given.
+        **kwargs: `description` and `condition`.
+    """
+
+    def __init__(self, name: str, *, default_value: bool | SomeSubstitutionsType | None = None, **kwargs: Any) -> None:
+        default = str(default_value) if isinstance(default_value, bool) else default_value
+        choices = ["true", "false", "True", "False", "TRUE", "FALSE"]
+        super().__init__(name, default_value=default, choices=choices, **kwargs)
 
 
 _ENVIRONMENT = "environment"

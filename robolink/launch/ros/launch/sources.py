@@ -10,7 +10,7 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from robolink.exceptions import nearest
 from robolink.launch.ros.launch.bases import (
@@ -33,8 +33,10 @@ __all__ = [
     "LaunchDescriptionSource",
     "LaunchFileNotFoundError",
     "PythonLaunchDescriptionSource",
-    "read_launch_file",
-    "read_python_file",
+    "get_launch_description_from_any_launch_file",
+    "get_launch_description_from_frontend_launch_file",
+    "get_launch_description_from_python_launch_file",
+    "load_python_launch_file_as_module",
 ]
 
 
@@ -178,6 +180,7 @@ def _described(top: LaunchDescription) -> Iterator[LaunchDescriptionEntity]:
     return (each.entity for each in described(Described(top), LaunchContext()))
 
 
+SomePath: TypeAlias = "str | os.PathLike[str]"
 MAKER = "generate_launch_description"
 """Name of the function in a Python launch file."""
 
@@ -258,7 +261,7 @@ class LaunchDescriptionSource(LaunchDescriptionEntity):
             return None
 
     def _read(self, path: Path) -> LaunchDescription:
-        return read_launch_file(path)
+        return get_launch_description_from_any_launch_file(path)
 
 
 class PythonLaunchDescriptionSource(LaunchDescriptionSource):
@@ -272,7 +275,7 @@ class PythonLaunchDescriptionSource(LaunchDescriptionSource):
         super().__init__(None, launch_file_path, "interpreted python launch file")
 
     def _read(self, path: Path) -> LaunchDescription:
-        return read_python_file(path)
+        return get_launch_description_from_python_launch_file(path)
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
@@ -292,7 +295,7 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
     Args:
         launch_file_path: Path of the file.
         method: Description of how it is read.
-        parser: Ignored; the suffix decides.
+        parser: Parser of it; None takes that of files with such a name.
     """
 
     def __init__(
@@ -303,16 +306,45 @@ class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
         parser: Any = None,
     ) -> None:
         super().__init__(None, launch_file_path, method)
+        self._parser = parser
+
+    def _read(self, path: Path) -> LaunchDescription:
+        return get_launch_description_from_frontend_launch_file(path, parser=self._parser)
 
 
-def read_launch_file(path: Path) -> LaunchDescription:
-    """Read a launch file at `path` of any kind; raises LaunchError, and whatever a Python file raises."""
-    if path.suffix == ".py":
-        return read_python_file(path)
+def get_launch_description_from_any_launch_file(launch_file_path: SomePath, *, parser: Any = None) -> LaunchDescription:
+    """Return the description in a launch file of any kind.
+
+    Args:
+        launch_file_path: Path of the file.
+        parser: Parser of one in XML, YAML or the like; None takes that of files with such a name.
+
+    Raises:
+        LaunchError: for a file that is none, or is not there; besides, whatever a Python file raises.
+    """
+    if Path(launch_file_path).suffix == ".py":
+        return get_launch_description_from_python_launch_file(launch_file_path)
+    return get_launch_description_from_frontend_launch_file(launch_file_path, parser=parser)
+
+
+def get_launch_description_from_frontend_launch_file(
+    launch_file_path: SomePath, *, parser: Any = None
+) -> LaunchDescription:
+    """Return the description in a launch file in XML, YAML or the like.
+
+    Args:
+        launch_file_path: Path of the file.
+        parser: Parser of it; None takes that of files with such a name.
+
+    Raises:
+        LaunchError: for a file that is none, or is not there.
+        DocumentError: for a mistake in it, with its line.
+    """
+    path = Path(launch_file_path)
     if not path.is_file():
         raise LaunchFileNotFoundError(path)
-    entity, parser = _parser_of(path).load(path)
-    description: LaunchDescription = parser.parse_description(entity)
+    entity, found = (parser or _parser_of(path)).load(path)
+    description: LaunchDescription = found.parse_description(entity)
     return description
 
 
@@ -327,11 +359,14 @@ def _parser_of(path: Path) -> Any:
     raise InvalidLaunchFileError(reason=f"{path} is not a launch file: expected .py, {', '.join(_FRONTENDS)}")
 
 
-def read_python_file(path: Path) -> LaunchDescription:
-    """Run a Python launch file at `path` and return its description; raises LaunchError and whatever it raises."""
-    if not path.is_file():
-        raise LaunchFileNotFoundError(path)
-    module = _loaded(path)
+def get_launch_description_from_python_launch_file(python_launch_file_path: SomePath) -> LaunchDescription:
+    """Run a Python launch file and return its description; raises LaunchError and whatever it raises.
+
+    Args:
+        python_launch_file_path: Path of the file.
+    """
+    path = Path(python_launch_file_path)
+    module = load_python_launch_file_as_module(path)
     maker = getattr(module, MAKER, None)
     if maker is None:
         raise InvalidPythonLaunchFileError(reason=f"{path}: it has no function {MAKER}(){_instead_of_maker(module)}")
@@ -351,8 +386,18 @@ def _instead_of_maker(module: ModuleType) -> str:
     return "; a node is run by 'robolink run'"
 
 
-def _loaded(path: Path) -> ModuleType:
-    """Load a file as a module of its own: two packages may each have a `robot.launch.py`; no bytecode is stored."""
+def load_python_launch_file_as_module(python_launch_file_path: SomePath) -> ModuleType:
+    """Load a file as a module of its own: two packages may each have a `robot.launch.py`; no bytecode is stored.
+
+    Args:
+        python_launch_file_path: Path of the file.
+
+    Raises:
+        LaunchFileNotFoundError: if it is not there; besides, whatever the file raises.
+    """
+    path = Path(python_launch_file_path)
+    if not path.is_file():
+        raise LaunchFileNotFoundError(path)
     name = f"launch file {path}"
     loader = SourceFileLoader(name, str(path))
     spec = spec_from_loader(name, loader)
@@ -400,18 +445,21 @@ class IncludeLaunchDescription(Action):
         around = context.get_locals_as_dict()
         chain: tuple[str, ...] = around.get("launch_files", ())
         description = source.get_launch_description(context)
-        if not Path(source.location).is_file():
-            return [*(SetLaunchConfiguration(*each) for each in self.launch_arguments), description]
-        path = os.path.abspath(source.location)  # noqa: PTH100 - a link stays a link
-        if circle(chain, path):
-            raise LaunchError(circle(chain, path))
-        if len(chain) > DEEPEST:
-            raise LaunchError(f"launch files are included over {DEEPEST} deep")
         arguments = [SetLaunchConfiguration(*each) for each in self.launch_arguments]
-        own = {FILES[0]: path, FILES[1]: str(Path(path).parent), "launch_files": (*chain, path)}
+        if not source.location:
+            return [*arguments, description]
+        own: dict[str, Any] = dict.fromkeys(FILES, source.location)  # a word such as <script>
+        if Path(source.location).is_file():
+            path = os.path.abspath(source.location)  # noqa: PTH100 - a link stays a link
+            if circle(chain, path):
+                raise LaunchError(circle(chain, path))
+            if len(chain) > DEEPEST:
+                raise LaunchError(f"launch files are included over {DEEPEST} deep")
+            own = {FILES[0]: path, FILES[1]: str(Path(path).parent), "launch_files": (*chain, path)}
         back = {name: around.get(name) for name in own if name in around}
         # ROS 2 performs an argument's value where the included file counts already: ThisLaunchFileDir is its folder.
-        return [_Locals(own), *arguments, description, _Locals(back)]
+        context.extend_locals(own)
+        return [*arguments, description, *([_Locals(back)] if back else [])]
 
 
 class _Locals(Action):

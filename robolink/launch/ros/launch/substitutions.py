@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from robolink.exceptions import nearest
-from robolink.launch.ros.launch.bases import LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
+from robolink.launch.ros.launch.bases import LaunchContext, LaunchError, SomeSubstitutionsType, Substitution, described
 from robolink.launch.ros.launch.utilities import (
     FALSE,
     TRUE,
@@ -66,6 +66,10 @@ class SubstitutionFailure(LaunchError):  # noqa: N818 - ROS 2's name
     """A substitution has no value; the text has the reason."""
 
 
+class ExpressionNameError(SubstitutionFailure, NameError):
+    """An expression has a name that is not there: one of a module, say, that it does not have."""
+
+
 _STEP = re.compile(r"\.?(\w+)|\[\s*(?:'([^']*)'|\"([^\"]*)\"|(\d+))\s*\]")
 _numbers = itertools.count(1)
 
@@ -94,6 +98,10 @@ class LaunchConfiguration(Substitution):
             raise SubstitutionFailure(f"no launch argument is called '{shown(name)}'{hint}")
         return perform_substitutions(context, self.default)
 
+    def describe(self) -> str:
+        """Return a description for people."""
+        return f"LaunchConfig({described(self.variable_name)})"
+
 
 class EnvironmentVariable(Substitution):
     """Value of an environment variable.
@@ -115,6 +123,10 @@ class EnvironmentVariable(Substitution):
         if self.default_value is None:
             raise SubstitutionFailure(f"the environment has no '{shown(name)}'{nearest(name, context.environment)}")
         return perform_substitutions(context, self.default_value)
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return f"EnvVar({described(self.name)})"
 
 
 class LocalSubstitution(Substitution):
@@ -264,7 +276,7 @@ class LaunchLogDir(Substitution):
 
 
 class AnonName(Substitution):
-    """Name that no other process has: the same one for the same name in a launch.
+    """Name that no other process has, on this machine or another: the same one for the same name in a launch.
 
     Args:
         name: Its beginning.
@@ -277,7 +289,9 @@ class AnonName(Substitution):
         """Return the name."""
         key = f"anon{perform_substitutions(context, self.name)}"
         if key not in context.launch_configurations:
-            base = re.sub(r"\W", "_", key.removeprefix("anon"))
+            import socket
+
+            base = re.sub(r"\W", "_", f"{key.removeprefix('anon')}_{socket.gethostname()}", flags=re.ASCII)
             context.launch_configurations[key] = f"{base}_{os.getpid()}_{next(_numbers)}"
         return str(context.launch_configurations[key])
 
@@ -310,7 +324,7 @@ class NotSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(not boolean(context, self.value))
+        return _spelled(not _truth(context, self.value))
 
 
 class AllSubstitution(Substitution):
@@ -325,7 +339,7 @@ class AllSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(all(boolean(context, each) for each in self.args))
+        return _spelled(all(_truth(context, each) for each in self.args))
 
 
 class AnySubstitution(AllSubstitution):
@@ -333,7 +347,7 @@ class AnySubstitution(AllSubstitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(any(boolean(context, each) for each in self.args))
+        return _spelled(any(_truth(context, each) for each in self.args))
 
 
 class AndSubstitution(AllSubstitution):
@@ -415,7 +429,15 @@ class IfElseSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text that counts."""
-        return perform_substitutions(context, self.if_value if boolean(context, self.condition) else self.else_value)
+        return perform_substitutions(context, self.if_value if _truth(context, self.condition) else self.else_value)
+
+
+def _truth(context: LaunchContext, subs: SomeSubstitutionsType) -> bool:
+    """Return the boolean that the text of `subs` spells. Raises SubstitutionFailure."""
+    try:
+        return boolean(context, subs)
+    except LaunchError as error:
+        raise SubstitutionFailure(str(error)) from None
 
 
 def _spelled(value: bool) -> str:
@@ -577,7 +599,14 @@ class PythonExpression(Substitution):
             return str(eval(text, names))  # noqa: S307 - the launch file is a program, this is a part of it
         except Exception as error:  # noqa: BLE001 - whatever the expression raises
             reason = f"{type(error).__name__}: {error}"
-            raise SubstitutionFailure(f"the expression '{shown(text)}' fails: {shown(reason, _SHOWN)}") from None
+            kind = ExpressionNameError if isinstance(error, NameError) else SubstitutionFailure
+            raise kind(f"the expression '{shown(text)}' fails: {shown(reason, _SHOWN)}") from None
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return (
+            f"PythonExpr({described(self.expression)}, [{', '.join(each.describe() for each in self.python_modules)}])"
+        )
 
 
 class FileContent(Substitution):

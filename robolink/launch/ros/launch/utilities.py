@@ -73,6 +73,10 @@ class TextSubstitution(Substitution):
         """Return the text."""
         return self.text
 
+    def describe(self) -> str:
+        """Return the text in quotes."""
+        return f"'{self.text}'"
+
 
 def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Substitution]:
     """Return a text, a path, a substitution or several of these, `subs`, as a list of substitutions.

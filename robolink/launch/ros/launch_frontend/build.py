@@ -290,6 +290,31 @@ def _group(reading: Reading) -> Arguments:
     }
 
 
+def _bool_arg(reading: Reading) -> Arguments:
+    reading.entity.get_attr("name")
+    described = reading.plain("description")
+    return {"name": reading.plain("name"), "default_value": reading.parsed("default"), "description": described}
+
+
+def _for_each(reading: Reading) -> Arguments:
+    """Read a loop; its actions are read again for each iteration, which starts processes of its own."""
+    reading.actions()
+    return {
+        "input_values": reading.needed("values"),
+        "function": lambda **values: [actions.Iteration(reading.actions(), values)],
+    }
+
+
+def _for_loop(reading: Reading) -> Arguments:
+    reading.actions()
+    name = reading.entity.get_attr("name")
+    return {
+        "length": reading.needed("len"),
+        "name": name,
+        "function": lambda index: [actions.Iteration(reading.actions(), {name: index})],
+    }
+
+
 def _timer(reading: Reading) -> Arguments:
     period = reading.parsed("period", float)
     if period is None:
@@ -320,8 +345,11 @@ def _named(reading: Reading, **names: str) -> Arguments:
 
 ROWS: dict[type, Callable[[Reading], Arguments]] = {
     actions.AppendEnvironmentVariable: _append_env,
+    actions.DeclareBooleanLaunchArgument: _bool_arg,
     actions.DeclareLaunchArgument: _arg,
     actions.ExecuteProcess: _executable,
+    actions.ForEach: _for_each,
+    actions.ForLoop: _for_loop,
     actions.GroupAction: _group,
     actions.IncludeLaunchDescription: _include,
     actions.Log: functools.partial(_named, msg="message", level="level"),
@@ -348,7 +376,10 @@ ROWS: dict[type, Callable[[Reading], Arguments]] = {
 TAGS: dict[str, type[Action]] = {
     "append_env": actions.AppendEnvironmentVariable,
     "arg": actions.DeclareLaunchArgument,
+    "bool_arg": actions.DeclareBooleanLaunchArgument,
     "executable": actions.ExecuteProcess,
+    "for": actions.ForLoop,
+    "for_each": actions.ForEach,
     "group": actions.GroupAction,
     "include": actions.IncludeLaunchDescription,
     "let": actions.SetLaunchConfiguration,

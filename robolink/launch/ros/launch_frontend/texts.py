@@ -43,6 +43,15 @@ def _path(data: Arguments) -> tuple[Callable[..., Any], dict[str, Any]]:
     return own.PathJoinSubstitution, {"substitutions": data}
 
 
+def _expression(data: Arguments) -> tuple[Callable[..., Any], dict[str, Any]]:
+    """Return the arguments of an expression; the names of modules are one text, with commas."""
+    found: dict[str, Any] = {"expression": data[0]}
+    if len(data) > 1:
+        names = "".join(getattr(each, "text", "") for each in data[1]).split(",")
+        found["python_modules"] = [each.strip() for each in names if each.strip()]
+    return own.PythonExpression, found
+
+
 ROWS: dict[str, tuple[int, int, Method]] = {
     "all": _any_number(own.AllSubstitution),
     "and": _named(own.AndSubstitution, "left", "right"),
@@ -52,7 +61,7 @@ ROWS: dict[str, tuple[int, int, Method]] = {
     "dirname": _named(own.ThisLaunchFileDir),
     "env": _named(own.EnvironmentVariable, "name", "default_value", least=1),
     "equals": _named(own.EqualsSubstitution, "left", "right"),
-    "eval": _named(own.PythonExpression, "expression", "python_modules", least=1),
+    "eval": (1, 2, _expression),
     "exec-in-pkg": _named(ros.ExecutableInPackage, "executable", "package"),
     "file-content": _named(own.FileContent, "path"),
     "filename": _named(own.ThisLaunchFile),

@@ -47,15 +47,18 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self._text, self._at, self._depth = text, 0, 0
 
-    def text(self, end: str = "", quote: str = "") -> list[Substitution]:
-        """Read up to one of the letters of `end`, or up to the closing `quote`; to the end of the text without."""
+    def text(self, end: str = "", quote: str = "", is_quoted: bool = False) -> list[Substitution]:
+        """Read up to one of the letters of `end`, or up to the closing `quote`; to the end of the text without.
+
+        With `is_quoted` it is within quotes already, where other ones are letters like any other.
+        """
         found: list[Substitution] = []
         plain: list[str] = []
         while self._at < len(self._text):
             here = self._text[self._at]
             if self._text.startswith("$(", self._at):
                 _flush(plain, found)
-                found.append(self._substitution())
+                found.append(self._substitution(is_quoted=bool(quote) or is_quoted))
             elif here == "\\" and self._escapes(end):
                 plain.append(self._text[self._at + 1])
                 self._at += 2
@@ -72,7 +75,7 @@ class _Reader:
         after = self._text[self._at + 1 : self._at + 2]
         return after not in ("", "\n") and not (end and after.isspace())
 
-    def _substitution(self) -> Substitution:
+    def _substitution(self, is_quoted: bool) -> Substitution:
         begin, self._at = self._at, self._at + 2
         self._depth += 1
         if self._depth > DEEPEST:
@@ -85,7 +88,8 @@ class _Reader:
             here = self._text[self._at]
             if here == ")":
                 break
-            arguments.append(self._quoted(here) if here in "'\"" else self.text(end=")"))
+            is_quote = here in "'\"" and not is_quoted
+            arguments.append(self._quoted(here) if is_quote else self.text(end=")", is_quoted=is_quoted))
         self._at += 1
         self._depth -= 1
         return _made(arguments, self._text[begin : self._at])
