@@ -8,8 +8,6 @@ one has its links; what both bring is delivered once.
 from __future__ import annotations
 
 import contextlib
-import functools
-import queue
 import threading
 import time
 from collections.abc import Callable
@@ -21,7 +19,6 @@ from robolink.exceptions import TransportClosedError, TransportError
 from robolink.logging import get_logger
 from robolink.qos import QoSProfile
 from robolink.system import clocks
-from robolink.system.waits import get_within
 from robolink.transport import addresses, lifetime
 from robolink.transport.addresses import Place, Probes, waiting
 from robolink.transport.base import Handle, Outlet, Query, Sample, Sink, Transport
@@ -35,7 +32,8 @@ from robolink.transport.roaming_handles import (
     RoamingWatch,
 )
 from robolink.transport.zenoh import ZenohTransport
-from robolink.transport.zenoh_declare import ask
+from robolink.transport.zenoh_declare import ask, is_over
+from robolink.transport.zenoh_handles import LOOKS_AGAIN
 from robolink.transport.zenoh_recovery import Recovery
 
 LINKS_WITHIN = 1.0
@@ -319,8 +317,9 @@ def _linked(session: Any) -> set[str]:
 
 def _hear_out(session: Any) -> None:
     """Wait until those linked have told what they subscribe to: the answer to a question comes after that."""
-    answered: queue.SimpleQueue[None] = queue.SimpleQueue()
-    with contextlib.suppress(queue.Empty, zenoh.ZError):
+    with contextlib.suppress(zenoh.ZError):
         with lifetime.inside:
-            ask(session, NOBODY, functools.partial(answered.put, None), LINKS_WITHIN)
-        get_within(answered, LINKS_WITHIN)
+            question = ask(session, NOBODY, LINKS_WITHIN)
+        deadline = clocks.monotonic() + LINKS_WITHIN
+        while not is_over(question) and clocks.monotonic() < deadline:
+            time.sleep(LOOKS_AGAIN)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 import os
-import queue
 import time
 import weakref
 from collections.abc import Callable, Mapping
@@ -127,10 +126,10 @@ class ZenohTransport(Transport):
         A session that has just taken the rendezvous port waits for those that may still be there without one.
         """
         time.sleep(max(0.0, self._met_at - clocks.monotonic()))
-        arrived: queue.SimpleQueue[Any] = queue.SimpleQueue()
-        subscriber = self._make(pattern, declare.declare_look, pattern, arrived.put)
+        subscriber = self._make(pattern, declare.declare_look, pattern)
         try:
-            return sorted(settled(arrived, functools.partial(self._make, pattern, declare.ask, pattern), self._peers))
+            ask = functools.partial(self._make, pattern, declare.ask, pattern)
+            return sorted(settled(subscriber.handler, ask, self._peers))
         finally:
             declare.quietly(subscriber.undeclare)
 

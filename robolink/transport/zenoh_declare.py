@@ -143,18 +143,41 @@ def declare_watch(session: zenoh.Session, pattern: str, changed: Sink) -> tuple[
     return watch, feed
 
 
-def declare_look(session: zenoh.Session, pattern: str, arrived: Sink) -> Any:
-    """Subscribe to token changes; `arrived`, which should be C, is called on Zenoh's thread."""
-    return _declare_tokens(session, pattern, direct(arrived))
+def declare_look(session: zenoh.Session, pattern: str) -> Any:
+    """Subscribe to token changes, which wait in a channel for whoever looks."""
+    return _declare_tokens(session, pattern, zenoh.handlers.FifoChannel(MOST_BETWEEN))
 
 
 def _declare_tokens(session: zenoh.Session, pattern: str, handler: Any) -> Any:
+    # Of Rust only: Zenoh reports what is there already on the thread that ends the task of an advanced publisher, too,
+    # and zenoh-python keeps Python until that has ended.
     return session.liveliness().declare_subscriber(pattern, handler, history=True)
 
 
-def ask(session: zenoh.Session, pattern: str, answered: Callable[[], object], timeout: float) -> None:
-    """Query the tokens of all peers; `answered()` is called when they have answered, or after `timeout` seconds."""
-    session.liveliness().get(pattern, direct(bool, answered), timeout=timeout)
+def ask(session: zenoh.Session, pattern: str, timeout: float) -> Any:
+    """Query the tokens of all peers; `is_over` of the result when they have answered, or after `timeout` seconds."""
+    # Of Rust only: Zenoh drops this handler while it has locked its session, where one of Python would wait for Python;
+    # an advanced subscriber that is undeclared meanwhile keeps Python and waits for that lock (zenoh 1.10.2).
+    return session.liveliness().get(pattern, zenoh.handlers.RingChannel(1), timeout=timeout)
+
+
+def is_over(question: Any) -> bool:
+    """Return True if nothing more comes from a channel, the result of `ask`."""
+    try:
+        with lifetime.inside:
+            question.try_recv()
+    except zenoh.ZError:
+        return True
+    return False
+
+
+def taken(channel: Any) -> Any:
+    """Return the next item of a channel, None if none is there, or its session is closed."""
+    try:
+        with lifetime.inside:
+            return channel.try_recv()
+    except zenoh.ZError:
+        return None
 
 
 def direct(callback: Callable[[Any], object], drop: Callable[[], object] | None = None) -> Any:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-import queue
 import threading
+import time
 from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -16,8 +15,8 @@ from robolink.logging import get_logger
 from robolink.networks.settings import LONGEST_WAIT
 from robolink.system import clocks, heap
 from robolink.system.terminal import shown
-from robolink.system.waits import get_within
 from robolink.transport import lifetime
+from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.gates import close_gate
 from robolink.transport.network import reason
@@ -344,28 +343,37 @@ class ZenohWatch(Declared):
         return super().shut(why)
 
 
-def settled(
-    arrived: queue.SimpleQueue[Any], ask: Callable[[Callable[[], object], float], object], peers: Callable[[], set[str]]
-) -> set[str]:
-    """Collect tokens until all peers have announced theirs and no more peers turn up."""
+LOOKS_AGAIN = 0.0003
+"""Interval between two looks for what peers have announced, in seconds."""
+
+
+def settled(look: Any, ask: Callable[[float], Any], peers: Callable[[], set[str]]) -> set[str]:
+    """Return the tokens of all peers, once they have announced theirs and no more peers turn up.
+
+    Args:
+        look: Channel of token changes (`zenoh_declare.declare_look`).
+        ask: Asks all peers for their tokens, with a timeout in seconds (`zenoh_declare.ask`).
+        peers: Returns the ids of the peers that this session has found.
+    """
     changes, known = Changes(lambda token, alive: None), set[str]()
     begin = news = clocks.monotonic()
 
     def left() -> float:
         return min(news + PATIENCE, begin + LONGEST) - clocks.monotonic()
 
-    def collect(quiet: float) -> None:
+    def collect(quiet: float, question: Any = None) -> None:
         """Collect until the peers have answered, or nothing has come for `quiet` seconds."""
         nonlocal news
-        while (longest := min(left(), quiet)) > 0:
-            try:
-                sample = get_within(arrived, longest)
-            except queue.Empty:
+        since = clocks.monotonic()
+        while left() > 0 and clocks.monotonic() - since < quiet:
+            # Looked at first: an answer comes after all tokens of the peer.
+            is_answered = question is not None and declare.is_over(question)
+            while (sample := declare.taken(look)) is not None:
+                news = since = clocks.monotonic()
+                changes(sample)
+            if is_answered:
                 return
-            if sample is None:
-                return
-            news = clocks.monotonic()
-            changes(sample)
+            time.sleep(LOOKS_AGAIN)
 
     was_quiet = False
     while left() > 0:
@@ -373,8 +381,7 @@ def settled(
         if not before <= known:
             news, known = clocks.monotonic(), known | before
         # Silence alone proves nothing: a busy peer is silent too. Its answer comes after all its tokens.
-        ask(functools.partial(arrived.put, None), LONGEST)
-        collect(LONGEST)
+        collect(LONGEST, ask(LONGEST))
         if was_quiet and peers() == before:
             break
         collect(max(QUIET, (clocks.monotonic() - begin) / 2))  # what has taken long so far may have longer gaps
