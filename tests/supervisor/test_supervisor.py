@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
+import threading
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -56,6 +59,44 @@ def test_the_last_words_of_a_process_are_printed_before_its_end_is_reported() ->
     code, lines = run(python("a", "print('last', end='')\nraise SystemExit(3)"))
     assert code == 3
     assert lines == ["[a] last", "[launch] a ended with exit code 3"]
+
+
+def pieces_of(process: Process) -> tuple[int, list[tuple[bytes, int | None]]]:
+    """Return the return code of a process, and all that it wrote, in pieces."""
+    ended, pieces, codes = threading.Event(), list[tuple[bytes, int | None]](), list[int]()
+
+    def line(name: str, line: bytes, fd: int | None = None) -> None:
+        pieces.append((line, fd))
+
+    def end(name: str, code: int) -> None:
+        codes.append(code)
+        ended.set()
+
+    with closing(Lifeline()) as lifeline:
+        Child(process, lifeline).watch(line, end)
+        assert ended.wait(20)
+    return codes[0], pieces
+
+
+def test_output_and_errors_may_be_kept_apart_and_come_in_pieces() -> None:
+    code = "import sys; sys.stdout.write('out'); sys.stderr.write('err'); sys.exit(sys.stdin.isatty() or 3)"
+    process = Process("a", [sys.executable, "-S", "-c", code], apart=True)
+    returned, pieces = pieces_of(process)
+    assert returned == 3
+    assert sorted(pieces, key=str) == [(b"err", 2), (b"out", 1)]
+
+
+def test_an_environment_may_be_given_as_a_whole() -> None:
+    code = "import os; print(sorted(each for each in os.environ if each in ('PATH', 'A', 'B')))"
+    _, pieces = pieces_of(Process("a", [sys.executable, "-S", "-c", code], base={"A": "1"}, env={"B": "2"}))
+    assert pieces == [(b"['A', 'B']" + os.linesep.encode(), None)]
+
+
+@posix_only
+def test_output_may_be_a_terminal() -> None:
+    code = "import sys; print(sys.stdout.isatty(), flush=True); print(sys.stderr.isatty(), file=sys.stderr)"
+    _, pieces = pieces_of(Process("a", [sys.executable, "-S", "-c", code], apart=True, terminal=True))
+    assert b"".join(text for text, _ in sorted(pieces, key=str)) == b"True\r\nTrue\r\n"
 
 
 def test_stop_ends_the_system_from_any_thread() -> None:

@@ -302,6 +302,21 @@ def test_a_restart_gives_a_process_all_its_starts_back() -> None:
     assert policy.exited("a", 1, 11) == [Say("a ended with exit code 1: starting it again in 2 s (1 of 2 within 60 s)")]
 
 
+def test_one_process_may_have_a_patience_of_its_own() -> None:
+    policy = two(Rules(on_exit="ignore", patience=(1.0, 3.0)))
+    assert policy.stop_one("a", 10) == [Say("stopping a"), Ask("a", INTERRUPT)]
+    assert policy.deadline == 11.0
+    assert policy.woken(11) == [Say("still running after 1 s: a", "WARN"), Ask("a", TERMINATE)]
+    assert policy.deadline == 14.0
+    assert policy.woken(14) == [Say("still running after 3 s: a", "WARN"), Ask("a", KILL)]
+
+
+def test_a_process_that_was_interrupted_already_gets_the_next_step_in_time() -> None:
+    policy = two(PLAIN)
+    assert policy.stop_one("a", 1, is_interrupted=True) == [Say("stopping a")]
+    assert policy.woken(6) == [Say("still running after 5 s: a", "WARN"), Ask("a", TERMINATE)]
+
+
 def test_one_process_stops_and_the_others_go_on() -> None:
     policy = two(FOR_EVER, PLAIN)
     told = replay(policy, [(1, ("a", "stop")), (2, ("a", 0)), (3, ("a", "stop"))])

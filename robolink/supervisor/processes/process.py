@@ -58,7 +58,8 @@ class Process:
         base: Environment to which `env` is added; None is this process's at its start.
         apart: True keeps its output and its errors apart, and hands on what it writes at once, in pieces that need not
             end with a line. Its standard input, unless `input` has any, is a pipe that nobody writes to.
-        terminal: True lets its output and errors be terminals, where the system has such, so that it writes in colour.
+        terminal: True lets its output and errors, if they are apart, be terminals, where the system has such: it may
+            write in colour then.
     """
 
     name: str
@@ -202,18 +203,17 @@ def _started(process: Process, stdin: IO[bytes] | int | None, lifeline: Lifeline
             **_own_group(),
         )
     if masters:
-        popen.stdout, *others = (open(each, "rb", 0) for each in masters)  # noqa: PTH123, SIM115 - the readers close it
-        popen.stderr = others[0] if others else None
+        popen.stdout, popen.stderr = (open(each, "rb", 0) for each in masters)  # noqa: PTH123, SIM115 - readers close it
     return popen
 
 
 @contextmanager
 def _streams(process: Process) -> Iterator[tuple[int, int, list[int]]]:
     """Yield the standard output and errors of a process, and for terminals the ends at which they are read."""
-    if not process.terminal or sys.platform == "win32":
+    if not (process.terminal and process.apart) or sys.platform == "win32":
         yield subprocess.PIPE, subprocess.PIPE if process.apart else subprocess.STDOUT, []
         return
-    pairs = [os.openpty() for _ in range(1 + process.apart)]
+    pairs = [os.openpty() for _ in range(2)]
     try:
         yield pairs[0][1], pairs[-1][1], [master for master, _ in pairs]
     except BaseException:

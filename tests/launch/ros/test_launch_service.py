@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -353,3 +354,33 @@ def test_a_program_that_says_ctrl_c_has_interrupted_its_processes() -> None:
         begun = OnProcessIO(target_action=process, on_stdout=end)
         assert ran(process, RegisterEventHandler(begun), noninteractive=noninteractive) == 0
     assert codes == [-signal.SIGINT, -signal.SIGTERM]
+
+
+ENDED_FROM_OUTSIDE = """
+import os, signal, sys, threading
+import robolink.compat
+from launch import LaunchDescription, LaunchService
+from launch.actions import ExecuteProcess, RegisterEventHandler
+from launch.event_handlers import OnProcessIO
+
+CODE = "print('here', flush=True); input()"
+child = ExecuteProcess(cmd=[sys.executable, "-S", "-c", CODE])
+end = lambda event: os.kill(os.getpid(), signal.{name}) if b"here" in event.text else None
+service = LaunchService()
+service.include_launch_description(LaunchDescription([
+    child, RegisterEventHandler(OnProcessIO(target_action=child, on_stdout=end))]))
+code = service.run()
+print("ended", code, child.return_code, signal.getsignal(signal.{name}) is not None)
+"""
+
+
+@pytest.mark.processes
+@pytest.mark.skipif(sys.platform == "win32", reason="signals end a process at once there")
+@pytest.mark.parametrize(("name", "code"), [("SIGINT", 0), ("SIGTERM", 1)])
+def test_a_signal_stops_the_processes_in_order(name: str, code: int, tmp_path: Path) -> None:
+    script = ENDED_FROM_OUTSIDE.replace("{name}", name)
+    environ = {**os.environ, "ROBOLINK_COMPAT": "always", "ROS_LOG_DIR": str(tmp_path)}
+    ran = subprocess.run(
+        [sys.executable, "-c", script], env=environ, capture_output=True, text=True, timeout=30, check=False
+    )
+    assert ran.stdout.splitlines()[-1] == f"ended {code} -2 True", ran.stderr
