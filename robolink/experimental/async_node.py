@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import threading
 from collections.abc import Callable, Coroutine, Generator
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
@@ -23,6 +22,7 @@ from robolink.experimental.pump import Pump
 from robolink.node import BaseNode
 from robolink.node_parts.making import make_client, make_publisher, make_service, make_subscription
 from robolink.qos import QoSProfile, qos_profile_services_default
+from robolink.running.defaults import get_defaults
 from robolink.running.entity import ANY_TIME
 from robolink.timer import period_ns
 from robolink.type_support import MsgT
@@ -80,7 +80,7 @@ class AsyncNode(BaseNode):
         self._pump_: Pump | None = None
         self._group_: TaskGroup | None = None
         self._entered_by_: asyncio.Task[Any] | None = None
-        self._is_interrupted_ = False
+        self._is_interrupted_ = self._is_in_main_thread_ = False
 
     def _make_clock_(self) -> AsyncClock:
         return AsyncClock(clock_type=ClockType.ROS_TIME, time_base=self._context.time)
@@ -108,6 +108,7 @@ class AsyncNode(BaseNode):
         group = TaskGroup()
         self._group_ = await group.__aenter__()
         self._entered_by_ = asyncio.current_task()
+        self._is_in_main_thread_ = get_defaults().in_main_thread()
         self._context.given_parameters.warn_of_typos([self])
         self._context.on_shutdown(self._on_context_end_)
         self._pump_ = Pump(self, group)
@@ -118,11 +119,16 @@ class AsyncNode(BaseNode):
     ) -> None:
         group, task = self._group_, self._entered_by_
         assert group is not None
+        if exc_type is GeneratorExit:  # the loop went away in the middle of it: nothing can be awaited
+            return self.destroy_node()
         try:
             self.destroy_node()
         finally:
             try:
                 await group.__aexit__(exc_type, exc_val, exc_tb)
+            except (KeyboardInterrupt, SystemExit):
+                if not isinstance(exc_val, asyncio.CancelledError):
+                    raise  # else it came out of a callback, and has left the event loop by itself
             finally:
                 self._group_ = self._pump_ = self._entered_by_ = None
                 if self._is_interrupted_ and task is not None and isinstance(exc_val, asyncio.CancelledError):
@@ -141,7 +147,7 @@ class AsyncNode(BaseNode):
     def _on_context_end_(self) -> None:
         """End the running at Ctrl-C or SIGTERM in another thread than the main one, which alone hears of them."""
         pump = self._pump_
-        if pump is not None and self._context.interrupted and pump.thread != threading.main_thread().ident:
+        if pump is not None and self._context.interrupted and not self._is_in_main_thread_:
             with contextlib.suppress(RuntimeError):  # the loop is closed
                 pump.loop.call_soon_threadsafe(self._interrupt_)
 

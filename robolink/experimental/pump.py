@@ -175,7 +175,7 @@ class Pump:
             outcome = entity.execute(taken)
             if inspect.iscoroutine(outcome):
                 await outcome
-        except asyncio.CancelledError:
+        except (asyncio.CancelledError, GeneratorExit):  # the second, if its loop went away without it
             raise
         except BaseException:
             self.close()  # the task group ends: it takes no task any more

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import signal
 import threading
 from collections.abc import Iterator
@@ -26,7 +27,9 @@ def _handlers() -> Iterator[None]:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("by", ["loop", "timer"])
-def test_a_signal_ends_the_program_and_its_node(context: Context, number: int, by: str) -> None:
+def test_a_signal_ends_the_program_and_its_node(
+    context: Context, number: int, by: str, caplog: pytest.LogCaptureFixture
+) -> None:
     ends: list[str] = []
 
     async def main() -> None:
@@ -44,6 +47,8 @@ def test_a_signal_ends_the_program_and_its_node(context: Context, number: int, b
         asyncio.run(main())
     assert ends == ["block"]
     assert context.nodes == []
+    gc.collect()
+    assert not caplog.records
 
 
 @pytest.mark.parametrize("shape", ["block", "run"])
