@@ -111,6 +111,16 @@ class HostedLoop(asyncio.SelectorEventLoop):
         """Restore the default effect of a signal. Return True if it had a handler."""
         return self._program.handlers.pop(sig, None) is not None
 
+    def run_forever(self) -> None:
+        """Run until `stop`, or the end of the program: of one that is killed no task has a turn any more."""
+        try:
+            super().run_forever()
+        except Killed:
+            for each in sorted(asyncio.all_tasks(self), key=hash):
+                with contextlib.suppress(BaseException):  # of whatever its `finally` clauses do
+                    each.get_coro().close()
+            raise
+
     def call_exception_handler(self, context: dict[str, Any]) -> None:
         """Handle an error that nobody else does; what an ended program leaves behind is none."""
         if not self._is_dead():
@@ -183,7 +193,7 @@ class HostedSelector(selectors.DefaultSelector):
         runner = runner_of(self._program)
         if runner is None:  # a thread that the host does not know
             return super().select(timeout)
-        if runner.killed:  # no task of the program has a turn any more
+        if runner.killed:
             raise Killed
         if self._real and (ready := super().select(0)):
             return ready

@@ -27,7 +27,7 @@ from robolink.transport.memory import Bus, MemoryTransport
 from robolink.workspace import find_node
 
 if TYPE_CHECKING:
-    from robolink.node import Node
+    from robolink.node import BaseNode
 
 PATIENCE = 5.0
 """Seconds of virtual time from a program's interrupt to its kill."""
@@ -106,7 +106,7 @@ class Host:
 
     def start_node(
         self,
-        node_class: Callable[[], Node],
+        node_class: Callable[[], BaseNode],
         *,
         name: str = "",
         namespace: str = "",
@@ -138,7 +138,7 @@ class Host:
             raise HostError(f"{called} ended with exit code {program.returncode} while it was made")
         return program.nodes[0]
 
-    def start_class(self, node_class: Callable[[], Node], called: str, argv: Sequence[str] = ()) -> Program:
+    def start_class(self, node_class: Callable[[], BaseNode], called: str, argv: Sequence[str] = ()) -> Program:
         """Start a program of one Node class, `called` so or nearly so; give it. It begins as the host runs."""
         called = self._free_name(called)
         adopt(sys.modules.get(getattr(node_class, "__module__", "")))

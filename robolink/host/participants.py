@@ -265,12 +265,12 @@ class Runners:
 
 
 class _Place:
-    """Place where a target's sink delivers: the inbox of its executor; None while no executor has it."""
+    """Place where a target's sink delivers: the inbox of its executor, and its `schedule`; None while none has it."""
 
-    __slots__ = ("inbox",)
+    __slots__ = ("inbox", "schedule")
 
-    def __init__(self, inbox: HostedInbox | None) -> None:
-        self.inbox = inbox
+    def __init__(self, inbox: HostedInbox | None, schedule: Callable[[HostedInbox], object]) -> None:
+        self.inbox, self.schedule = inbox, schedule
 
 
 class HostedInbox(Inbox):
@@ -291,17 +291,18 @@ class HostedInbox(Inbox):
         """Function that runs one callback, in this thread: the step of the executor's driver, once it has one."""
         self._due = due
         self._place: HostedInbox | None = self
+        self._schedule: Callable[[HostedInbox], object] = due.append
 
     def sink(self, target: Any) -> Any:
         """Return the sink of a target: a function in Python, since no foreign thread calls it."""
-        place = _Place(self._place)
-        sink = _sink(target.deliver, place, self._due.append)
+        place = _Place(self._place, self._schedule)
+        sink = _sink(target.deliver, place)
         sink.place = place  # type: ignore[attr-defined]
         return sink
 
     def take_over(self, sink: Any) -> None:
         """Redirect an existing sink here."""
-        sink.place.inbox = self._place
+        sink.place.inbox, sink.place.schedule = self._place, self._schedule
 
     def wake(self) -> None:
         """Schedule the executor, or the thread that waits here."""
@@ -329,15 +330,22 @@ class ParkedInbox(HostedInbox):
         """Do nothing: nobody waits here."""
 
 
-def _sink(
-    deliver: Callable[[Any], None], place: _Place, schedule: Callable[[HostedInbox], None]
-) -> Callable[[Any], None]:
+class HostedLoopInbox(HostedInbox):
+    """Inbox of a node on an event loop: what arrives is delivered at once, and `rouse` lets the loop look into it."""
+
+    def __init__(self, due: deque[Any], rouse: Callable[[], object]) -> None:
+        super().__init__(due, is_executors=False)
+        self.wake = rouse  # type: ignore[method-assign,assignment] # a call less
+        self._schedule = lambda inbox: rouse()
+
+
+def _sink(deliver: Callable[[Any], None], place: _Place) -> Callable[[Any], None]:
     def arrive(content: Any) -> None:
         deliver(content)
         inbox = place.inbox
         if inbox is not None:
             inbox.queued += 1
-            schedule(inbox)
+            place.schedule(inbox)
 
     return arrive
 

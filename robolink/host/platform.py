@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
 from robolink.host.driver import HostDriver
-from robolink.host.participants import HostedInbox, ParkedInbox, ProgramLike
+from robolink.host.participants import HostedInbox, HostedLoopInbox, ParkedInbox, ProgramLike
 from robolink.host.threads import HostedPool
 from robolink.logging import get_logger_level, set_logger_level
 from robolink.node_parts import rosout
@@ -61,6 +61,10 @@ class HostedPlatform(Platform):
     def make_inbox(self, *, parked: bool) -> Inbox:
         """Make the mailbox at which an executor waits, or the one for what waits while no executor has it."""
         return ParkedInbox(self._scheduler.due) if parked else HostedInbox(self._scheduler.due)
+
+    def make_loop_inbox(self, rouse: Callable[[], object], *, threaded: bool) -> Inbox:
+        """Make the inbox of a node on an event loop: no other thread delivers, whatever the network."""
+        return HostedLoopInbox(self._scheduler.due, rouse)
 
     def make_sweeper(self) -> Sweeper:
         """Make one that does nothing: what arrives is delivered at once."""

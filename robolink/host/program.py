@@ -32,7 +32,7 @@ from robolink.system.processes import Variables
 from robolink.text.suggestions import LackingNameError
 from robolink.text.tracebacks import formatted
 from robolink.workspace import VARIABLE, NodeLoadError, NodeSource, load_node, workspace_of
-from robolink.workspace.load import check_needs_nothing, make_node
+from robolink.workspace.load import check_needs_nothing, make_node, runs_itself
 
 if TYPE_CHECKING:
     from robolink.node import Node
@@ -162,7 +162,9 @@ class Program:
         life = self.lives
         try:
             found = [part.load(self) for part in self.parts]
-            if isinstance(found[0], type):
+            if any(map(runs_itself, found)):
+                self._run_async_node(found)
+            elif isinstance(found[0], type):
                 self._make_nodes(found)
             else:
                 self._run_script(found[0])
@@ -171,9 +173,34 @@ class Program:
         if self.lives == life:
             self.has_begun = True
 
-    def _make_nodes(self, classes: Sequence[Callable[[], Any]]) -> None:
+    def _run_async_node(self, classes: Sequence[Callable[[], Any]]) -> None:
+        """Run an AsyncNode on a loop of its own, in this thread."""
+        from robolink.experimental.program import run_node  # late: few programs have such nodes
+
+        if len(classes) > 1:
+            raise NodeLoadError(f"{self.name}: an AsyncNode needs a process of its own: leave `process` out")
+        context = self._initialized_context()
+        context.arguments = parse_arguments(self.argv)
+        run_node(lambda: make_node(classes[0]), self._note_made)
+        self.end()
+
+    def _note_made(self, node: Any) -> None:
+        self._made.append(node)
+        self._set_levels(node)
+        self.has_begun = True
+
+    def _initialized_context(self) -> Context:
         context = self.defaults.context = Context()
         context.init([])
+        return context
+
+    def _set_levels(self, node: Node) -> None:
+        """Set the levels of loggers that the command line names; one without a name is the node's."""
+        for logger, level in node.context.arguments.log_levels:
+            set_logger_level(logger or node.get_logger().name, level)
+
+    def _make_nodes(self, classes: Sequence[Callable[[], Any]]) -> None:
+        context = self._initialized_context()
         executor = self.defaults.executor = SingleThreadedExecutor(context=context)
         driver = executor._driver
         assert isinstance(driver, HostDriver)
@@ -183,8 +210,7 @@ class Program:
             context.arguments = parse_arguments(part.argv)
             node = make_node(node_class)
             self._made.append(node)
-            for logger, level in context.arguments.log_levels:
-                set_logger_level(logger or node.get_logger().name, level)
+            self._set_levels(node)
             executor.add_node(node)
         context.given_parameters.warn_of_typos(self._made)
         self.driver.release()

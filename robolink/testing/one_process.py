@@ -19,7 +19,7 @@ from robolink.host.call_sites import is_users
 from robolink.host.supervision import Supervision
 from robolink.launch import processes
 from robolink.message import type_hash
-from robolink.node import Node
+from robolink.node import BaseNode, Node
 from robolink.simulate.settings import numpy_seeded
 from robolink.supervisor.policy import Step, is_orderly
 from robolink.testing.faults import Faults, ProgramFaults
@@ -104,7 +104,7 @@ class OneProcess:
             raise
         return self._node_of(program)
 
-    def _started_class(self, node_class: type[Node], request: NodeRequest) -> Any:
+    def _started_class(self, node_class: type[BaseNode], request: NodeRequest) -> Any:
         called = self._free_name(request.namespace, request.name or _name_in(node_class) or node_class.__name__)
         self.program_faults.injector.register(called, [called])
         node = self.host.start_node(
@@ -260,7 +260,7 @@ class OneProcess:
         self._stack.close()
 
 
-def _name_in(node_class: type[Node]) -> str:
+def _name_in(node_class: type[BaseNode]) -> str:
     """Return the name that the code of a class gives its nodes, if it stands there: programs are called so.
 
     A wrong clock must be known by it before there is a node: a context has its time from when it is made on, and the

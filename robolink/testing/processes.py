@@ -17,7 +17,7 @@ from robolink.faults.injector import Fault
 from robolink.interfaces.rcl_interfaces.msg import Log
 from robolink.interfaces.rcl_interfaces.srv import ListParameters
 from robolink.logging import LoggingSeverity, Record
-from robolink.node import Node
+from robolink.node import BaseNode, Node
 from robolink.qos import qos_profile_rosout_default
 from robolink.serialization import serialize_message
 from robolink.system import clocks, waits
@@ -325,7 +325,7 @@ def _key(end: EndpointToken) -> str:
     return format_key(DataKey(end.domain, end.name, end.type_name, end.type_hash))
 
 
-def _spec(what: type[Node] | str | Path) -> str:
+def _spec(what: type[BaseNode] | str | Path) -> str:
     """Return the name by which `robolink run` finds it. Raises OnlyInMemoryError for a class that no file gives."""
     if not isinstance(what, type):
         return str(what)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from robolink.launch.entry import System as LaunchSystem
     from robolink.logging import Record
     from robolink.message import Message
-    from robolink.node import Node
+    from robolink.node import BaseNode, Node
     from robolink.testing.faults import Faults
     from robolink.testing.recorder import Recorder, Topic
     from robolink.transport import Transport
@@ -36,16 +36,16 @@ def full(node: str | Named) -> str:
     raise TypeError(f"expected a node or its name, got {node!r}")
 
 
-Startable: TypeAlias = "type[Node] | Callable[[], object] | str | Path"
+Startable: TypeAlias = "type[BaseNode] | Callable[[], object] | str | Path"
 """A Node class, a name as `robolink run` finds it, a file, or a main() of one."""
 
 
-def startable(what: Any) -> type[Node] | str | Path:
+def startable(what: Any) -> type[BaseNode] | str | Path:
     """Return a startable thing: a class, or the name by which `robolink run` finds it. Raises TypeError."""
     __tracebackhide__ = True
-    from robolink.node import Node
+    from robolink.node import BaseNode
 
-    if isinstance(what, (str, PathLike)) or (isinstance(what, type) and issubclass(what, Node)):
+    if isinstance(what, (str, PathLike)) or (isinstance(what, type) and issubclass(what, BaseNode)):
         return what if isinstance(what, (str, type)) else Path(what)
     if inspect.isfunction(what) and what.__qualname__.isidentifier():
         return f"{inspect.getsourcefile(what)}:{what.__name__}"
@@ -58,7 +58,7 @@ def startable(what: Any) -> type[Node] | str | Path:
 class NodeRequest(NamedTuple):
     """A node to start, with the arguments of its start."""
 
-    what: type[Node] | str | Path
+    what: type[BaseNode] | str | Path
     name: str = ""
     namespace: str = ""
     parameters: Mapping[str, Any] = {}

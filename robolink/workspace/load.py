@@ -361,9 +361,14 @@ def _lack(module: ModuleType) -> str:
 
 
 def _is_node(found: object) -> bool:
-    from robolink.node import Node
+    from robolink.node import BaseNode, Node
 
-    return isinstance(found, type) and issubclass(found, Node) and found is not Node
+    return isinstance(found, type) and issubclass(found, BaseNode) and found not in (BaseNode, Node)
+
+
+def runs_itself(node_class: object) -> bool:
+    """Return True for a class of AsyncNodes, which no executor spins."""
+    return isinstance(node_class, type) and getattr(node_class, "_runs_itself_", False) is True
 
 
 def make_node(node_class: Callable[[], Node]) -> Node:

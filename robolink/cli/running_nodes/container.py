@@ -16,7 +16,7 @@ from robolink.cli.shared.output import tell
 from robolink.exceptions import ExternalShutdownException, RobolinkError
 from robolink.launch.shared_process import Member
 from robolink.workspace import NodeLoadError, NodeSource, find_node, load_node
-from robolink.workspace.load import make_node
+from robolink.workspace.load import make_node, runs_itself
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -102,6 +102,7 @@ def make(member: Member, source: NodeSource, context: Context) -> Node:
 
 def _node_class(source: NodeSource) -> type[Node]:
     found = load_node(source)
-    if not isinstance(found, type):
-        raise NodeLoadError(f"{source.spec} is not a Node class, and needs a process of its own: leave `process` out")
+    if not isinstance(found, type) or runs_itself(found):
+        what = "an AsyncNode class" if isinstance(found, type) else "not a Node class"
+        raise NodeLoadError(f"{source.spec} is {what}, and needs a process of its own: leave `process` out")
     return found

@@ -53,7 +53,7 @@ from robolink.workspace import (
     user_workspace,
     workspace_of,
 )
-from robolink.workspace.load import check_needs_nothing, make_node
+from robolink.workspace.load import check_needs_nothing, make_node, runs_itself
 
 if TYPE_CHECKING:
     from robolink.node import Node
@@ -229,6 +229,10 @@ def spin(node_class: Callable[[], Node]) -> None:
 
     # Exit code 0 after Ctrl-C, as of rclpy's usual main(); a script decides itself.
     with robolink.init(), contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+        if runs_itself(node_class):
+            from robolink.experimental.program import run_node  # late: with asyncio
+
+            return run_node(lambda: make_node(node_class))
         node = make_node(node_class)
         try:
             robolink.spin(node)

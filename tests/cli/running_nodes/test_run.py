@@ -48,6 +48,44 @@ def test_a_node_class_runs_until_it_is_interrupted(write: Write, number: int) ->
         assert process.returncode == 0
 
 
+ASYNC_TALKER = """
+import asyncio
+from rclpy.experimental import AsyncNode
+
+class Talker(AsyncNode):
+    def __init__(self):
+        super().__init__("talker")
+        self.word = self.declare_parameter("word", "hi").value
+        self.create_timer(0.001, self.tick)
+
+    async def tick(self):
+        await asyncio.sleep(0)
+        print("up", self.get_fully_qualified_name(), 1 / len(self.word), flush=True)
+        await asyncio.Event().wait()
+"""
+
+
+@pytest.mark.processes
+@posix_only
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_asynchronous_node_class_runs_until_it_is_interrupted(write: Write, number: int) -> None:
+    write("nodes/talker.py", ASYNC_TALKER)
+    with started("run", "talker", "--namespace", "robot", "-p", "word:=ho") as process:
+        assert wait_for(process, "up") == "up /robot/talker 0.5"
+        process.send_signal(number)
+        assert process.communicate(timeout=PATIENCE) == ("", "")
+        assert process.returncode == 0
+
+
+@pytest.mark.processes
+def test_what_a_callback_of_an_asynchronous_node_class_raises_is_shown_alone(write: Write) -> None:
+    write("nodes/talker.py", ASYNC_TALKER)
+    code, out, err = outcome("run", "talker", "-p", "word:=''")
+    assert (code, out) == (1, "")
+    assert err.splitlines()[-1] == "ZeroDivisionError: division by zero"
+    assert "Group" not in err
+
+
 @pytest.mark.processes
 def test_a_script_gets_its_own_arguments_and_gives_its_exit_code(write: Write) -> None:
     script = write("say.py", "import sys\ndef main():\n    print(sys.argv[1:], flush=True)\n    return 7\n")
