@@ -86,7 +86,7 @@ class LaunchDescriptionEntity:
 
     def describe(self) -> str:
         """Return a description for people."""
-        return type(self).__name__
+        raise NotImplementedError(f"{type(self).__name__} has no describe()")
 
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the entities inside that are visited in any case."""
@@ -161,6 +161,10 @@ class Action(LaunchDescriptionEntity):
     def condition(self) -> Condition | None:
         """The condition, None if there is none."""
         return getattr(self, "_condition", None)
+
+    def describe(self) -> str:
+        """Return a description for people."""
+        return type(self).__name__
 
     def get_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the entities that it brings along."""

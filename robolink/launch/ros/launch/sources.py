@@ -147,6 +147,10 @@ class LaunchDescription(LaunchDescriptionEntity):
         """Add an `action`."""
         self.entities.append(action)
 
+    def describe(self) -> str:
+        """Return a description for people."""
+        return type(self).__name__
+
     def describe_sub_entities(self) -> list[LaunchDescriptionEntity]:
         """Return the entities in it."""
         return list(self.entities)

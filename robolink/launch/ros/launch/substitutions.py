@@ -339,7 +339,11 @@ class AllSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(all(_truth(context, each) for each in self.args))
+        return _spelled(all(self._truths(context)))
+
+    def _truths(self, context: LaunchContext) -> list[bool]:
+        """Return all the booleans: each text must spell one, wherever it stands."""
+        return [_truth(context, each) for each in self.args]
 
 
 class AnySubstitution(AllSubstitution):
@@ -347,7 +351,7 @@ class AnySubstitution(AllSubstitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return _spelled(any(_truth(context, each) for each in self.args))
+        return _spelled(any(self._truths(context)))
 
 
 class AndSubstitution(AllSubstitution):

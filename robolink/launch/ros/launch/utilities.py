@@ -89,7 +89,11 @@ def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Subs
         return [TextSubstitution(text=os.fspath(subs))]
     if not isinstance(subs, Iterable) or isinstance(subs, (bytes, dict)):
         raise LaunchArgumentError(f"expected a text or a substitution, got {_kind(subs)}")
-    return [each for part in subs for each in normalize_to_list_of_substitutions(part)]
+    parts = list(subs)
+    for each in parts:
+        if not isinstance(each, (str, os.PathLike, Substitution)):  # ROS 2 takes no lists within lists either
+            raise LaunchArgumentError(f"expected a text or a substitution, got {_kind(each)}")
+    return [each for part in parts for each in normalize_to_list_of_substitutions(part)]
 
 
 def perform_substitutions(context: LaunchContext, subs: Iterable[Substitution]) -> str:

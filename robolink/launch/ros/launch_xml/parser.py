@@ -28,7 +28,7 @@ class Parser(BaseParser):
 
     @classmethod
     def load(cls, file: SomeFile) -> tuple[Entity, Parser]:
-        """Return the `launch` element of a `file`, and a parser of it. Raises DocumentError with its line."""
+        """Return the outermost element of a `file`, and a parser of it. Raises DocumentError with its line."""
         if not isinstance(file, (str, bytes, os.PathLike)):
             return Entity(_read(file.read(), str(getattr(file, "name", "<text>")))), cls()
         path = os.fsdecode(file)
@@ -52,7 +52,7 @@ def _read(text: str | bytes, file: str) -> ElementTree.Element:
         reason = expat.ErrorString(error.code)
         raise DocumentError(f"no XML: {reason}", file, error.lineno, error.offset + 1) from None
     top = reader.top
-    if top is None or top.tag != "launch":
+    if top is None:
         raise DocumentError("a launch file begins with <launch>", file, 1)
     _refuse_ros1(top)
     if reader.stray is not None:

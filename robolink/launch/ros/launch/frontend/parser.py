@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any, TypeAlias
 
-from robolink.exceptions import RobolinkError
+from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.ros.launch.bases import Action, Substitution
 from robolink.launch.ros.launch.frontend.entity import Entity
 from robolink.launch.ros.launch.frontend.expose import add_own, instantiate_action
@@ -98,7 +98,7 @@ class Parser:
         from robolink.launch.ros.launch.actions import LogInfo
 
         if entity.type_name != "launch":
-            raise entity.error("a launch file begins with <launch>")
+            raise DocumentError("a launch file begins with <launch>", entity.place.file, entity.place.line)
         reason = entity.get_attr("deprecated", optional=True)
         entity.get_attr("version", optional=True)
         actions = [self.parse_action(each) for each in entity.children]
