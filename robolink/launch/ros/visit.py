@@ -111,7 +111,7 @@ class Visit:
     visited: int = 0
     """Number of the actions that were visited at this moment."""
     futures: list[tuple[LaunchDescriptionEntity, asyncio.Future[Any]]] = field(default_factory=list)
-    """What a LaunchService waits for: entities, each with the future of its end."""
+    """Entities for which a LaunchService waits, each with the future of its end."""
     _containers: dict[str, ComposableNodeContainer] = field(default_factory=dict)
     _processes: dict[str, str] = field(default_factory=dict)
     _followed: set[int] = field(default_factory=set)

@@ -227,7 +227,7 @@ class OnIncludeLaunchDescription(BaseEventHandler):
 
 
 def event_named(name: str) -> Callable[[Event], bool]:
-    """Return a function that is true for an event with this name, such as `launch.events.Shutdown`."""
+    """Return a function that is true for an event called `name`, such as `launch.events.Shutdown`."""
     return lambda event: event.name == name
 
 

@@ -88,7 +88,10 @@ class LaunchService:
             _close(loop)
 
     async def run_async(self, *, shutdown_when_idle: bool = True) -> int:
-        """Run until all has ended; arguments and result are those of `run`. Raises LaunchError if it runs already."""
+        """Run until all has ended, on the loop that runs; `shutdown_when_idle` and the result are those of `run`.
+
+        Raises LaunchError if it runs already.
+        """
         import asyncio
 
         from robolink.launch.ros.service import Runner

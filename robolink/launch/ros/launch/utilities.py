@@ -53,7 +53,7 @@ TRUE, FALSE = ("true", "1"), ("false", "0")
 
 
 def normalize_to_list_of_entities(entities: Iterable[SomeEntitiesType]) -> list[LaunchDescriptionEntity]:
-    """Return entities, of which some may be lists of such, as one list."""
+    """Return `entities`, of which some may be lists of such, as one list."""
     return [each for some in entities for each in entities_in(some)]
 
 
