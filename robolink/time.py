@@ -118,12 +118,12 @@ class Time:
         """Return the time as a date and a time of day, by the local clock and to a microsecond, without a time zone.
 
         Raises:
-            TypeError: if it is of a steady clock, whose times are no dates.
+            TypeError: if it is of a steady clock, whose times are not dates.
         """
         from datetime import datetime
 
         if self._clock_type not in (ClockType.ROS_TIME, ClockType.SYSTEM_TIME):
-            raise TypeError("a time of a steady clock is no date: expected one of ROS_TIME or SYSTEM_TIME")
+            raise TypeError("a time of a steady clock is not a date: expected one of ROS_TIME or SYSTEM_TIME")
         return datetime.fromtimestamp(self._nanoseconds / S_TO_NS)
 
     @classmethod

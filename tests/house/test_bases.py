@@ -10,7 +10,10 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 ROS_NAMES = {
+    "CachedComparisonHandler": "message_filters",
+    "ComparisonFilter": "message_filters",
     "CompositeDiagnosticTask": "diagnostic_updater",
+    "DeltaFilter": "message_filters",
     "DiagnosticTaskVector": "diagnostic_updater",
     "HeaderlessTopicDiagnostic": "diagnostic_updater",
     "IoHandler": "launch_testing",

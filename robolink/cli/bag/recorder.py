@@ -133,7 +133,7 @@ class _Command:
         self._logger = self._node.get_logger()
         self._logger.set_level(LoggingSeverity[request.log_level.upper()])
         self._served = ServedRecording(self._node, path, selection, settings)
-        self._told: Recording | None = None
+        self._has_said: Recording | None = None
         """The last recording of which the summary was printed."""
 
     def run(self, line: ProgressLine) -> None:
@@ -159,7 +159,7 @@ class _Command:
         """Close the bag."""
         line.clear()
         recording = self._served.recording
-        if recording.has_started and recording is not self._told:
+        if recording.has_started and recording is not self._has_said:
             recording.stop()
             self._logger.info("Recording stopped")
 
@@ -171,9 +171,9 @@ class _Command:
 
     def _tell(self, recording: Recording) -> None:
         """Print, once, how a recording went that has ended."""
-        if recording is self._told:
+        if recording is self._has_said:
             return
-        self._told, figures = recording, recording.figures()
+        self._has_said, figures = recording, recording.figures()
         if self._request.json:
             say_json(as_data(figures))
         else:

@@ -53,7 +53,7 @@ def spelled_out(args: Sequence[str]) -> list[str]:
 def with_folder(args: Sequence[str]) -> list[str]:
     """Return the arguments with the default folder for a `--record` that has none.
 
-    The word behind it is its folder if a launch file was named before, and that word is no option and no argument.
+    The word behind it is its folder if a launch file was named before, and that word is not an option and no argument.
     """
     result: list[str] = []
     is_value = has_file = False

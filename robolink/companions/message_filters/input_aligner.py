@@ -20,7 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass
 class QueueStatus:
-    """State of an input: whether the others wait for it, what waits in it, and what went out or was too late."""
+    """State of an input: whether the others wait for it, what waits in it, and what went out or was too late.
+
+    Args:
+        active: True if the others wait for it.
+        queue_size: Number of messages that wait.
+        msgs_processed: Number of messages that went out.
+        msgs_dropped: Number of messages that were too late.
+    """
 
     active: bool
     queue_size: int

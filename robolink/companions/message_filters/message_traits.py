@@ -14,7 +14,7 @@ TimeGetter: TypeAlias = Callable[[Any], "Time | None"]
 
 
 def get_time_from_message_header(message: Any) -> Time | None:
-    """Return the time in a message's header; None if it has none. Raises ValueError for a stamp before 0."""
+    """Return the time in the header of `message`; None if it has none. Raises ValueError for a stamp before 0."""
     stamp = getattr(getattr(message, "header", None), "stamp", None)
     return stamp if stamp is None or hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
 
@@ -45,7 +45,7 @@ class Stamps:
         self.reported = False
 
     def of(self, msg: Any) -> Time | None:
-        """Return the time, None for a message that is to be left out; the first of these is warned about."""
+        """Return the time of `msg`, None for one that is to be left out; the first of these is warned about."""
         if self.arrival:
             return self.clock.now()
         kind = type(msg).__name__

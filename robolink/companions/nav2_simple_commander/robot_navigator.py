@@ -39,7 +39,7 @@ A_LOOK = 2.0
 A_SECOND = 1.0
 """Time between two initial poses, in s, until localization has answered one."""
 CHECKS = "they check for collisions"
-"""What Jazzy's servers do, whatever `disable_collision_checks` is."""
+"""Checks that Jazzy's servers make, whatever `disable_collision_checks` is."""
 BY_HAND = "robot_localization"
 """Name of the localizer that has no lifecycle to wait for."""
 

@@ -166,7 +166,7 @@ class Reactions(Generic[T]):
         return self._following(now, lambda: self._emit(event))
 
     def _details(self, action: ExecuteLocal, name: str, pid: int) -> dict[str, Any]:
-        """Return what the events about a process say of it; `robolink launch` calls it as it does on the terminal."""
+        """Return the details of a process in the events about it, with its name on the terminal."""
         known = {"name": name, "cmd": [], "cwd": None, "env": None, **(action.process_details or {}), "pid": pid}
         known.pop("action", None)
         return known if self._outlives else {**known, "name": name}

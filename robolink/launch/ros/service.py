@@ -173,18 +173,18 @@ class Runner:
 
     def take(self, requests: Sequence[Request[Process]]) -> None:
         """Carry out requests, and plan the next timer."""
-        kept: list[Request[Process]] = []
+        stored: list[Request[Process]] = []
         for each in requests:
             if isinstance(each, Tell):
                 launch_logging.get_logger("launch.user").info(each.text)
             elif isinstance(each, End):
-                kept += self._ended(each)
+                stored += self._ended(each)
             else:
                 if isinstance(each, (Signal, Stop)):
                     self._note_signal(each)
-                kept.append(each)
-        if kept:
-            self._supervised().request(kept)
+                stored.append(each)
+        if stored:
+            self._supervised().request(stored)
         self._plan_timer()
         self._woken.set()
 

@@ -155,7 +155,7 @@ class Child:
         return not self._has_ended and is_alive(self.group)
 
     def _reading(self, on_line: OnLine) -> Iterator[Callable[[], None]]:
-        """Yield what reads each stream to its end."""
+        """Yield the readers of each stream, to its end."""
         output, errors = self._popen.stdout, getattr(self._popen, "stderr", None)
         assert output is not None
         if errors is None:

@@ -87,7 +87,7 @@ def _heard(context: LaunchContext, handler: BaseEventHandler) -> Iterator[None]:
 
 
 async def _wait(context: LaunchContext, change: _Change, timeout: float | None) -> Any:
-    """Return what `holds` returns as soon as that is true, or at the end of the timeout."""
+    """Return the result of `holds` as soon as that is true, or at the end of the timeout."""
     changed = asyncio.Event()
     end = None if timeout is None else clocks.monotonic() + timeout
     with _heard(context, change.handler(changed.set)):

@@ -161,7 +161,7 @@ def coerce_list(value: list[str], data_type: Any = None, *, can_be_str: bool = F
 
 
 def get_typed_value(value: str | list[str], data_type: Any, *, can_be_str: bool = False) -> Any:
-    """Return what a text or several of them spell, as `coerce_to_type` and `coerce_list` do.
+    """Return the value that a text or several of them spell, as `coerce_to_type` and `coerce_list` do.
 
     Args:
         value: The text, or several.

@@ -1,1 +1,1 @@
-"""What XML and YAML launch files share: their elements, and the tables of the actions and substitutions in them."""
+"""XML and YAML launch files: the elements that both share, and the tables of the actions and substitutions in them."""

@@ -74,7 +74,7 @@ class Reading:
             raise LaunchError(f"'{name}': {error}") from None
 
     def inside(self, tag: str, read: Callable[[Reading], T]) -> list[T]:
-        """Return what `read` makes of each of the elements called `tag`."""
+        """Return the results of `read` for the elements called `tag`."""
         found = self.entity.get_attr(tag, data_type=List[Entity], optional=True)  # noqa: UP006
         return [self._read(each, read) for each in found or ()]
 

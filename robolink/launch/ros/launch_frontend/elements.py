@@ -39,7 +39,7 @@ class Element(Entity):
 
     def __init__(self, tag: str, place: Place, parent: Element | None) -> None:
         self._tag, self.place, self._parent = tag, place, parent
-        self._asked: dict[str, None] = {}
+        self._requested: dict[str, None] = {}
         """Names of attributes that were asked for, whether they are there or not."""
 
     @property
@@ -58,12 +58,12 @@ class Element(Entity):
 
     def unread(self) -> list[str]:
         """Return the names of its attributes that nothing has asked for."""
-        return [each for each in self._names() if each not in self._asked]
+        return [each for each in self._names() if each not in self._requested]
 
     def assert_entity_completely_parsed(self) -> None:
         """Raise DocumentError, with the nearest name, if there is an attribute that nothing has asked for."""
         for name in self.unread():
-            raise self.error(unknown(name, self._asked, self._tag))
+            raise self.error(unknown(name, self._requested, self._tag))
 
     def missing(self, name: str) -> DocumentError:
         """Return an error (to raise) that an attribute, `name`, is not there, or that it is misspelt."""

@@ -97,7 +97,7 @@ LOOK_AGAIN = 0.2
 
 
 def _load(context: LaunchContext, client: Client, container: str, requests: Sequence[LoadNode.Request]) -> None:
-    """Have a container load components, as long as the launch goes on."""
+    """Load components into a container, as long as the launch goes on."""
     logger = get_logger("launch_ros.actions.load_composable_nodes")
     for request in requests:
         while not client.wait_for_service(timeout_sec=LOOK_AGAIN):

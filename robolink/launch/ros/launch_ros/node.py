@@ -42,11 +42,15 @@ SPECIFIC = "ros_specific_arguments"
 
 
 class Names(NamedTuple):
-    """Names of a node as far as its action says them."""
+    """Names of a node as far as its action says them.
+
+    Args:
+        name: Its name; None if the action has none.
+        namespace: The namespace within those around, with a slash in front; None if the action has none.
+    """
 
     name: str | None
     namespace: str | None
-    """The namespace within those around, with a slash in front."""
 
 
 class Node(ExecuteProcess):

@@ -53,7 +53,7 @@ class ParameterValue:
         return self._evaluated
 
     def for_node(self, context: LaunchContext) -> Any:
-        """Return the plain value as a node of ROS 2 gets it. Raises LaunchError."""
+        """Return the plain value in `context` as a node of ROS 2 gets it. Raises LaunchError."""
         found = self.evaluate(context)
         is_open = self.value_type is None and is_normalized_substitution(self._given)
         return as_node_reads(found) if is_open else found
@@ -96,7 +96,7 @@ class Parameter:
         return self._evaluated, self._value.evaluate(context)
 
     def for_node(self, context: LaunchContext) -> tuple[str, Any]:
-        """Return its name and its plain value as a node of ROS 2 gets it. Raises LaunchError."""
+        """Return its name and its plain value in `context`, as a node of ROS 2 gets them. Raises LaunchError."""
         return self.evaluate(context)[0], self._value.for_node(context)
 
 
@@ -136,7 +136,7 @@ class ParameterFile:
 
     @property
     def allow_substs(self) -> Any:
-        """Whether substitutions in the file are performed."""
+        """True if substitutions in the file are performed."""
         return self._allow_substs if self._evaluated_allow_substs is None else self._evaluated_allow_substs
 
     def __str__(self) -> str:

@@ -224,7 +224,7 @@ def _value(context: LaunchContext, value: Any) -> Any:
 
 
 def _spelled(context: LaunchContext, parts: Sequence[Substitution]) -> Any:
-    """Return what substitutions, which are one text, spell in YAML; an empty text stays one."""
+    """Return the YAML value that substitutions, which are one text, spell; an empty text stays one."""
     if len(parts) == 1 and isinstance(parts[0], PlainText):
         return parts[0].plain
     text = performed(context, parts)

@@ -72,7 +72,7 @@ def make_namespace_absolute(ns: str | None) -> str | None:
 
 
 def normalize_remap_rule(remap_rule: SomeRemapRule) -> RemapRule:
-    """Return a remapping, a pair of two names, with each name as substitutions.
+    """Return `remap_rule`, a pair of two names, with each name as substitutions.
 
     Raises LaunchArgumentError for what is not a pair.
     """

@@ -36,12 +36,12 @@ class Entity(Element):
         super().__init__(xml_element.tag, getattr(xml_element, "place", Place()), parent)
         self._written = xml_element.attrib
         self._elements = [Entity(each, parent=self) for each in xml_element]
-        self._asked_tags: dict[str, None] = {}
+        self._requested_tags: dict[str, None] = {}
 
     @property
     def children(self) -> list[Entity]:
         """Elements in it."""
-        self._asked_tags.update(dict.fromkeys(spelled_alike(each.type_name) for each in self._elements))
+        self._requested_tags.update(dict.fromkeys(spelled_alike(each.type_name) for each in self._elements))
         return list(self._elements)
 
     def _names(self) -> Collection[str]:
@@ -51,8 +51,10 @@ class Entity(Element):
         """Raise DocumentError if there is an attribute or an element in it that nothing has asked for."""
         super().assert_entity_completely_parsed()
         for each in self._elements:
-            if spelled_alike(each.type_name) not in self._asked_tags:
-                hint = nearest(each.type_name, self._asked_tags) or ("" if self._asked_tags else ": it holds none")
+            if spelled_alike(each.type_name) not in self._requested_tags:
+                hint = nearest(each.type_name, self._requested_tags) or (
+                    "" if self._requested_tags else ": it holds none"
+                )
                 raise each.error(f"'{self._tag}' holds no '{shown(each.type_name)}'{hint}")
 
     def get_attr(self, name: str, *, data_type: Any = str, optional: bool = False, can_be_str: bool = True) -> Any:
@@ -72,7 +74,7 @@ class Entity(Element):
         """
         if check_is_list_entity(data_type):
             return self._inside(name, optional)
-        self._asked[name] = None
+        self._requested[name] = None
         if name not in self._written:
             if optional:
                 return None
@@ -80,7 +82,7 @@ class Entity(Element):
         value: str | list[str] = self._written[name]
         separator = f"{name}-sep"
         if separator in self._written:
-            self._asked[separator] = None
+            self._requested[separator] = None
             value = value.split(self._written[separator]) if self._written[separator] else value  # type: ignore[union-attr]
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
@@ -88,7 +90,7 @@ class Entity(Element):
             raise self.wrong_type(f"'{name}': {error}") from None
 
     def _inside(self, tag: str, optional: bool) -> list[Entity] | None:
-        self._asked_tags[spelled_alike(tag)] = None
+        self._requested_tags[spelled_alike(tag)] = None
         found = [each for each in self._elements if spelled_alike(each.type_name) == spelled_alike(tag)]
         if not found and not optional:
             raise self.missing(tag)

@@ -46,7 +46,7 @@ class Entity(Element):
         """Elements in it: those of its list, or of the list `children` of its attributes. Raises MissingError."""
         if self._element is None:
             return []
-        self._asked["children"] = None
+        self._requested["children"] = None
         if isinstance(self._element, dict) and "children" not in self._element:
             raise self.missing("children")
         if "children" not in self._elements:
@@ -70,7 +70,7 @@ class Entity(Element):
 
     def assert_entity_completely_parsed(self) -> None:
         """Raise DocumentError if there is an attribute or an element in it that nothing has asked for."""
-        if isinstance(self._element, list) and "children" not in self._asked:
+        if isinstance(self._element, list) and "children" not in self._requested:
             raise self._not_a_mapping()
         super().assert_entity_completely_parsed()
 
@@ -91,7 +91,7 @@ class Entity(Element):
             raise self._not_a_mapping()
         is_list = check_is_list_entity(data_type)
         key = self._written(name) if is_list else name
-        self._asked[key] = None
+        self._requested[key] = None
         if not isinstance(self._element, dict) or key not in self._element:
             if optional:
                 return None

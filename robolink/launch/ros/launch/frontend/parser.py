@@ -185,7 +185,7 @@ class Parser:
 
 
 def _loaded(point: importlib_metadata.EntryPoint, kind: str) -> Any:
-    """Return what an entry point names; None, with a warning, if its module cannot be imported."""
+    """Return the object of an entry point; None, with a warning, if its module cannot be imported."""
     try:
         return point.load()
     except Exception as error:  # noqa: BLE001 - whatever the module raises
