@@ -25,7 +25,7 @@ from robolink.running.ready_queue import ReadyQueue
 from robolink.running.spun_nodes import SpunNodes
 from robolink.running.waiting import DeadlockWarning, Spinners, Waiting, limit
 from robolink.system import waits
-from robolink.task import Future
+from robolink.task import Future, watch
 from robolink.task import Task as Task
 from robolink.utilities import get_default_context as get_default_context
 
@@ -322,11 +322,11 @@ class Executor:
                 main thread, an InterruptedByUser, which is a KeyboardInterrupt too.
             Exception: what a callback raises.
         """
-        future.when_done(self.wake)
-        if not future.over() and self._context.ok() and not self._is_shutdown:
+        is_over = watch(future, self.wake)
+        if not is_over() and self._context.ok() and not self._is_shutdown:
             spin = self._spin_by_slices if self._is_users_own() else self._spin
-            spin(self._waiting.deadline(timeout_sec), future.over)
-        if not future.over():
+            spin(self._waiting.deadline(timeout_sec), is_over)
+        if not is_over():
             self._check_interrupt()
 
     def spin_once_until_future_complete(
@@ -338,8 +338,7 @@ class Executor:
             future: Future to wait for.
             timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait.
         """
-        future.when_done(self.wake)
-        self._spin(self._waiting.deadline(timeout_sec), future.over, once=True)
+        self._spin(self._waiting.deadline(timeout_sec), watch(future, self.wake), once=True)
 
     def _is_users_own(self) -> bool:
         return type(self).spin_once is not Executor.spin_once

@@ -166,6 +166,21 @@ class Future(Generic[T]):
         self._executor = (lambda: None) if executor is None else weakref.ref(executor)
 
 
+def watch(future: Any, waker: Callable[[], None]) -> Callable[[], bool]:
+    """Return the function that tells whether a future is over, and call `waker()` when it is.
+
+    Args:
+        future: Future of any kind: asyncio's and those of concurrent.futures, too.
+        waker: Function that is called in whatever thread that happens.
+    """
+    if isinstance(future, Future):
+        future.when_done(waker)
+        return future.over
+    future.add_done_callback(lambda _: waker())
+    is_over: Callable[[], bool] = future.done
+    return is_over
+
+
 def asyncio_loop() -> asyncio.AbstractEventLoop | None:
     """Return the event loop that runs in this thread, if there is one."""
     running = getattr(sys.modules.get("asyncio"), "_get_running_loop", None)  # where it was not imported, no loop runs
