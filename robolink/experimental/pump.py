@@ -11,9 +11,11 @@ import inspect
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import BlockingCallError
+from robolink.logging import get_logger
 from robolink.running.entity import NOTHING, Entity
 from robolink.running.ready_queue import ReadyQueue, earlier
 from robolink.system.waits import A_WHILE
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
 
 ASK_NS = int(A_WHILE * 1e9)
 """Longest time, in nanoseconds, until a program's own Waitable is asked again if it is ready."""
+
+STAYS = 1.0
+"""Time in seconds after which callbacks are named that go on though the node has ended."""
 
 
 class Pump:
@@ -210,6 +215,18 @@ class Pump:
         self.inbox.close()
         for task in list(self._running):
             task.cancel()
+        if self._running:
+            self._alarm = self.loop.call_later(STAYS, self._tell_who_stays)
+
+    def _tell_who_stays(self) -> None:
+        """Warn of callbacks that go on after they were cancelled: the end of the node waits for them."""
+        for task in self._running:
+            where = getattr(getattr(task.get_coro(), "cr_await", None), "cr_frame", None)
+            if where is not None:
+                place = f"{Path(where.f_code.co_filename).name}:{where.f_lineno}"
+                name = self._node.get_name()
+                what = f"{where.f_code.co_name} ({place}) is still running: it was cancelled, and goes on"
+                get_logger(name).warning(f"the end of node {name} waits for a callback: {what}")
 
 
 class _Work(Future[Any]):

@@ -8,13 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappush
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from robolink.executors import SingleThreadedExecutor
 from robolink.host.participants import CALLBACKS, HostedInbox, Job, ProgramLike, Runner
 from robolink.running.defaults import here
 from robolink.running.entity import Entity
 from robolink.running.waiting import POLL_NS
+from robolink.task import asyncio_loop
+
+if TYPE_CHECKING:
+    import asyncio
 
 
 class HostDriver:
@@ -38,6 +42,8 @@ class HostDriver:
         self._stop: Callable[[], bool] | None = None
         self._outcome: BaseException | None = None
         self._has_ended = False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        """The event loop of asyncio within which the executor is spun, if any."""
 
     # What code of the program sees
 
@@ -73,15 +79,29 @@ class HostDriver:
         if self.is_lent or self._stepper is not None:
             return False
         self._spinner, self._stop, self._outcome, self._has_ended = self._scheduler.runner(), stop, None, False
+        self._loop = asyncio_loop()
+        if self._loop is not None:
+            self._run = self._run_within_loop
         try:
             self._wait_while_lent(deadline)
         finally:
             self.withdraw()
-            self._spinner = self._stop = None
+            self._spinner = self._stop = self._loop = None
+            self._run = self._executor.run
         if not self._rests():  # the time is over, but not the callback that is under way
             self._scheduler.wait(holds=self._rests)
         self._raise_outcome()
         return True
+
+    def _run_within_loop(self, entity: Entity, taken: Any) -> None:
+        """Run one callback as in the thread that spins, in which an event loop runs."""
+        import asyncio
+
+        asyncio._set_running_loop(self._loop)
+        try:
+            self._executor.run(entity, taken)
+        finally:
+            asyncio._set_running_loop(None)
 
     def _rests(self) -> bool:
         return self._stepper is None
