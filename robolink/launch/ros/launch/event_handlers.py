@@ -79,9 +79,9 @@ class OnActionEventBase(_Reacting):
     ) -> None:
         is_matcher = isinstance(action_matcher, target_action_cls) or callable(action_matcher)
         if action_matcher is not None and not is_matcher:
-            kind, wanted = type(action_matcher).__name__, target_action_cls.__name__
+            kind, expected = type(action_matcher).__name__, target_action_cls.__name__
             raise LaunchArgumentError(
-                f"{type(self).__name__} reacts to an {wanted} or what a function means, got {kind}"
+                f"{type(self).__name__} reacts to an {expected} or what a function means, got {kind}"
             )
         if not callable(on_event):
             check_actions(on_event, type(self).__name__)
