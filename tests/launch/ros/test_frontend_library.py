@@ -352,6 +352,13 @@ def test_quotes_and_modules_are_as_in_ros(text: str, value: str) -> None:
     assert perform_substitutions(context, parse_substitution(text)) == value
 
 
+def test_quotes_of_one_kind_stand_in_each_other_with_a_backslash_only() -> None:
+    found = parse_substitution('$(env NOT_SET_AT_ALL "$(env NOT_SET_EITHER \\"b\\")")')
+    assert perform_substitutions(LaunchContext(), found) == '"b"'
+    with pytest.raises(ValueError, match="the other quotes around"):
+        parse_substitution('$(env A "$(env B "b")")')
+
+
 def test_values_keep_their_types_where_they_have_no_substitutions() -> None:
     assert parse_if_substitutions([1, 2]) == [1, 2]
     assert parse_if_substitutions("a") == "a"

@@ -47,10 +47,10 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self._text, self._at, self._depth = text, 0, 0
 
-    def text(self, end: str = "", quote: str = "", is_quoted: bool = False) -> list[Substitution]:
+    def text(self, end: str = "", quote: str = "", within: str = "") -> list[Substitution]:
         """Read up to one of the letters of `end`, or up to the closing `quote`; to the end of the text without.
 
-        With `is_quoted` it is within quotes already, where other ones are letters like any other.
+        `within` is the quote around the substitution that it is in: other ones are letters like any other there.
         """
         found: list[Substitution] = []
         plain: list[str] = []
@@ -58,10 +58,14 @@ class _Reader:
             here = self._text[self._at]
             if self._text.startswith("$(", self._at):
                 _flush(plain, found)
-                found.append(self._substitution(is_quoted=bool(quote) or is_quoted))
+                found.append(self._substitution(quote or within))
             elif here == "\\" and self._escapes(end):
                 plain.append(self._text[self._at + 1])
                 self._at += 2
+            elif within and here == within:
+                raise SubstitutionSyntaxError(
+                    f"{here} within {here}...{here}: write \\{here}, or the other quotes around"
+                )
             elif here == quote or here in end or (end and here.isspace()):
                 break
             else:
@@ -75,7 +79,7 @@ class _Reader:
         after = self._text[self._at + 1 : self._at + 2]
         return after not in ("", "\n") and not (end and after.isspace())
 
-    def _substitution(self, is_quoted: bool) -> Substitution:
+    def _substitution(self, within: str) -> Substitution:
         begin, self._at = self._at, self._at + 2
         self._depth += 1
         if self._depth > DEEPEST:
@@ -88,8 +92,8 @@ class _Reader:
             here = self._text[self._at]
             if here == ")":
                 break
-            is_quote = here in "'\"" and not is_quoted
-            arguments.append(self._quoted(here) if is_quote else self.text(end=")", is_quoted=is_quoted))
+            is_quote = here in "'\"" and not within
+            arguments.append(self._quoted(here) if is_quote else self.text(end=")", within=within))
         self._at += 1
         self._depth -= 1
         return _made(arguments, self._text[begin : self._at])
