@@ -7,6 +7,7 @@ from the first process on. What it notices comes to the loop; what follows goes 
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import signal
 import sys
@@ -176,7 +177,8 @@ class Runner:
         stored: list[Request[Process]] = []
         for each in requests:
             if isinstance(each, Tell):
-                launch_logging.get_logger("launch.user").info(each.text)
+                level = logging.getLevelName({"WARN": "WARNING", "FATAL": "CRITICAL"}.get(each.severity, each.severity))
+                launch_logging.get_logger("launch.user").log(level, each.text)
             elif isinstance(each, End):
                 stored += self._ended(each)
             else:

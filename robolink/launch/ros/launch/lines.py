@@ -44,15 +44,17 @@ class Log(Action):
         self.msg, self.level = normalize_to_list_of_substitutions(msg), normalize_to_list_of_substitutions(level)
 
     def execute(self, context: LaunchContext) -> None:
-        """Write it as a line of the launcher's own, with the values of `context`; one of the level debug is not shown.
+        """Write it as a line of the launcher's own, with the values of `context`. Raises LaunchError for another level.
 
-        Raises LaunchError for an unknown level.
+        One of the level debug is shown by a LaunchService(debug=True), or where `launch.logging` is set to it.
         """
+        import logging
+
         level = perform_substitutions(context, self.level).upper()
         if level not in SEVERITIES:
             hint = nearest(level, SEVERITIES) or f": there is {', '.join(SEVERITIES)}"
             raise LaunchError(f"no level is called '{shown(level)}'{hint}")
-        if SEVERITIES[level] != "DEBUG":
+        if SEVERITIES[level] != "DEBUG" or logging.getLogger("launch.user").isEnabledFor(logging.DEBUG):
             context.said.append(Said(perform_substitutions(context, self.msg), SEVERITIES[level]))
 
 
