@@ -43,7 +43,7 @@ PATIENCE = 30.0
 @pytest.fixture
 def robot(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Node]:
     monkeypatch.chdir(tmp_path)
-    real = recorder.opened
+    real = recorder.opened  # type: ignore[attr-defined]
 
     @contextmanager
     def opened(enclave: str) -> Iterator[Any]:
