@@ -11,6 +11,7 @@ import pytest
 
 from robolink.exceptions import DocumentError
 from robolink.launch.ros import launch_xml, launch_yaml
+from robolink.launch.ros.launch import bases, typed_values
 from robolink.launch.ros.launch.actions import Log, LogInfo
 from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, Substitution
 from robolink.launch.ros.launch.frontend import Entity, InvalidFrontendLaunchFileError, Parser, expose
@@ -368,6 +369,16 @@ def test_values_keep_their_types_where_they_have_no_substitutions() -> None:
     assert get_data_type_from_identifier("list_of_int") == List[int]  # noqa: UP006
     with pytest.raises(ValueError, match="no type is called 'double': float"):
         get_data_type_from_identifier("double")
+
+
+@pytest.mark.parametrize("name", ["SomeSubstitutionsType", "SomeEntitiesType", "SomeActionsType"])
+def test_types_of_annotations_are_types(name: str) -> None:
+    assert type(None) in (getattr(bases, name) | None).__args__
+
+
+def test_types_of_typed_values_are_types() -> None:
+    names = [each for each in typed_values.__all__ if each.endswith("Type") and each[0].isupper()]
+    assert all(type(None) in (getattr(typed_values, each) | None).__args__ for each in names)
 
 
 def test_an_action_without_attributes_of_its_own_has_a_condition_only() -> None:

@@ -75,7 +75,7 @@ def described(value: Any) -> str:
     return f"[{', '.join(map(described, value))}]" if isinstance(value, list) else repr(value)
 
 
-SomeSubstitutionsType: TypeAlias = "str | os.PathLike[str] | Substitution | Iterable[str | Substitution]"
+SomeSubstitutionsType: TypeAlias = str | os.PathLike[str] | Substitution | Iterable[str | Substitution]
 """Text, substitution, or several of these, which are joined."""
 SomeSubstitutionsType_types_tuple = (str, Path, Substitution, Iterable)
 """The same for `isinstance`."""
@@ -217,7 +217,7 @@ def no_argument(cls: type, name: str) -> LaunchArgumentError:
     return LaunchArgumentError(f"{cls.__name__} has no argument '{name}'{nearest(name, known)}")
 
 
-SomeEntitiesType: TypeAlias = "LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]"
+SomeEntitiesType: TypeAlias = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
 SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
 """The same for `isinstance`."""
 SomeActionsType = SomeEntitiesType

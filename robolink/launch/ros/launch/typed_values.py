@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import typing
-from collections.abc import Iterable
-from typing import Any, List  # noqa: UP035 - ROS 2 names its list types by it
+from collections.abc import Iterable, Sequence
+from typing import Any, List, TypeAlias  # noqa: UP035 - ROS 2 names its list types by it
 
 import yaml
 
-from robolink.launch.ros.launch.bases import LaunchArgumentError, LaunchContext, LaunchError, Substitution
+from robolink.launch.ros.launch.bases import (
+    LaunchArgumentError,
+    LaunchContext,
+    LaunchError,
+    SomeSubstitutionsType,
+    Substitution,
+)
 from robolink.launch.ros.launch.utilities import (
     ensure_argument_type,
     is_substitution,
@@ -19,8 +25,24 @@ from robolink.system.terminal import shown
 
 __all__ = [
     "AllowedTypesTuple",
+    "AllowedTypesType",
+    "AllowedValueType",
     "ListTypesTuple",
+    "ListTypesType",
+    "ListValueType",
+    "NormalizedScalarType",
+    "NormalizedSequenceType",
+    "NormalizedValueType",
     "ScalarTypesTuple",
+    "ScalarTypesType",
+    "ScalarValueType",
+    "SequenceValueType",
+    "SomeScalarType",
+    "SomeSequenceType",
+    "SomeValueType",
+    "StrSomeScalarType",
+    "StrSomeSequenceType",
+    "StrSomeValueType",
     "coerce_list",
     "coerce_to_type",
     "extract_type",
@@ -38,6 +60,22 @@ __all__ = [
 ScalarTypesTuple = (int, float, bool, str)
 ListTypesTuple = (List[int], List[float], List[bool], List[str])  # noqa: UP006
 AllowedTypesTuple = ScalarTypesTuple + ListTypesTuple
+ScalarTypesType: TypeAlias = type[int | float | bool | str]
+ListTypesType: TypeAlias = type[list[int] | list[float] | list[bool] | list[str]]
+AllowedTypesType: TypeAlias = ScalarTypesType | ListTypesType
+ScalarValueType: TypeAlias = int | float | bool | str
+ListValueType: TypeAlias = list[int] | list[float] | list[bool] | list[str]
+SequenceValueType: TypeAlias = Sequence[int] | Sequence[float] | Sequence[bool] | Sequence[str]
+AllowedValueType: TypeAlias = ScalarValueType | SequenceValueType
+SomeScalarType: TypeAlias = SomeSubstitutionsType | ScalarValueType
+SomeSequenceType: TypeAlias = Sequence[SomeScalarType]
+SomeValueType: TypeAlias = SomeScalarType | SomeSequenceType
+NormalizedScalarType: TypeAlias = list[Substitution] | ScalarValueType
+NormalizedSequenceType: TypeAlias = list[NormalizedScalarType]
+NormalizedValueType: TypeAlias = NormalizedScalarType | NormalizedSequenceType
+StrSomeScalarType = SomeScalarType
+StrSomeSequenceType: TypeAlias = Sequence[ScalarValueType]
+StrSomeValueType: TypeAlias = StrSomeScalarType | StrSomeSequenceType
 SPELLED = {"1": "true", "0": "false"}
 """Spellings of booleans that are none in YAML."""
 
