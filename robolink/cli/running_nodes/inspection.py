@@ -32,11 +32,15 @@ from robolink.transport.memory import Bus, MemoryTransport
 from robolink.utilities import set_default_context
 from robolink.wire import EndpointToken, NodeToken, graph_pattern, parse_token
 from robolink.workspace import NodeSource, find_node, load_node
-from robolink.workspace.load import make_node
+from robolink.workspace.load import make_node, runs_itself
 
 if TYPE_CHECKING:
     from robolink.node import Node
     from robolink.running.inbox import Inbox
+
+
+SETTLED = 0.1
+"""Time in seconds from the entry of an AsyncNode until its program has made what it makes at its start."""
 
 
 def run(request: Request) -> NoReturn:
@@ -107,13 +111,13 @@ class _Inspection:
 
     def _start(self, source: NodeSource, args: Sequence[str]) -> None:
         self._bus, self._nodes = Bus(), []
-        context = _Watched(self._nodes, MemoryTransport(bus=self._bus), _Standing(self._end))
+        context = _Watched(self._nodes, MemoryTransport(bus=self._bus), self._end)
         set_default_context(context)
         sys.argv = [str(source.path or source.name), *args]
         found = load_node(source)
         if isinstance(found, type):
             context.init(sys.argv)
-            make_node(found)
+            _make(found)
             self._lock.acquire()
             self._tell(self._seen())
         else:
@@ -163,18 +167,38 @@ class _Standing(VirtualTime):
 class _Watched(Context):
     """A context that records its nodes, and in which every wait succeeds at once."""
 
-    def __init__(self, nodes: list[Node], transport: MemoryTransport, time: VirtualTime) -> None:
-        super().__init__(transport=transport, time=time)
-        self._made = nodes
+    def __init__(self, nodes: list[Node], transport: MemoryTransport, on_wait: Callable[[], NoReturn]) -> None:
+        super().__init__(transport=transport, time=_Standing(on_wait))
+        self._made, self._on_wait = nodes, on_wait
 
     def track_node(self, node: Any) -> None:
         """Record a node."""
         self._made.append(node)
         super().track_node(node)
 
+    def make_loop_inbox(self, rouse: Callable[[], object]) -> Inbox:
+        """Make the inbox of a node that begins to run on an event loop: a while later it waits for the first time."""
+        import asyncio
+
+        asyncio.get_running_loop().call_later(SETTLED, self._on_wait)
+        return super().make_loop_inbox(rouse)
+
     def wait_until(self, is_there: Callable[[], bool], timeout_sec: float | None) -> bool:
         """Return True at once: so a loop ends in which a node waits for another one."""
         return True
+
+
+def _make(node_class: type) -> None:
+    """Make a node as its program would: an AsyncNode within an event loop."""
+    if not runs_itself(node_class):
+        make_node(node_class)
+        return
+    import asyncio
+
+    async def make() -> None:
+        make_node(node_class)
+
+    asyncio.run(make())
 
 
 def _end(token: EndpointToken) -> End:

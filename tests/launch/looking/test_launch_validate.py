@@ -67,6 +67,12 @@ FILES = {
     "rclpy.spin(node)\n",
     "timed": "import rclpy\ndef main():\n    with rclpy.init():\n        node = rclpy.create_node('timed')\n"
     "        rclpy.spin_once(node, timeout_sec=100.0)\n        open('x', 'w')\n",
+    "async_class": "import asyncio\nfrom rclpy.experimental import AsyncNode\nclass A(AsyncNode):\n"
+    "    def __init__(self):\n        super().__init__('async_class')\n"
+    "        self.declare_parameter('a', str(asyncio.get_running_loop().time()))\n",
+    "async_script": "import asyncio, rclpy\nfrom rclpy.experimental import AsyncNode\nasync def main():\n"
+    "    async with AsyncNode('async_script') as node:\n        node.declare_parameter('a', 1)\n"
+    "        await node.get_clock().sleep(100.0)\nwith rclpy.init():\n    asyncio.run(main())\n",
     "broken": "class",
 }
 
@@ -105,6 +111,14 @@ def test_classes_programs_and_scripts_are_looked_into(home: Path) -> None:
     assert {"word", "rate", "use_sim_time"} <= set(talker.declared)
     assert "a" in script.declared
     assert [each.error + each.unseen for each in (talker, listener, script, timed)] == [""] * 4
+
+
+@pytest.mark.processes
+def test_asynchronous_classes_and_scripts_are_looked_into(home: Path) -> None:
+    looks = looked(home, "async_class", "async_script")
+    assert [each.nodes for each in looks] == [["/async_class"], ["/async_script"]]
+    assert all("a" in each.declared for each in looks)
+    assert [each.error + each.unseen for each in looks] == ["", ""]
 
 
 @pytest.mark.processes
