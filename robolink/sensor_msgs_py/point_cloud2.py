@@ -168,7 +168,8 @@ def create_cloud(
     """
     fields = list(fields)
     if point_step is None and isinstance(points, np.ndarray) and points.dtype.names is not None:
-        point_step = points.dtype.itemsize
+        # Where the fields need more, the points do not fit them, which is told below.
+        point_step = max(points.dtype.itemsize, dtype_from_fields(fields).itemsize)
     found = _as_points(points, dtype_from_fields(fields, point_step))
     if found.ndim not in (1, 2):
         raise PointCloudError(f"points are a row or, in an organized cloud, a grid; got {found.ndim} dimensions")

@@ -117,7 +117,7 @@ def asked(scene: Scene) -> BufferClient:
 def awaited(scene: Scene) -> WaitForTopics:
     made = object.__new__(WaitForTopics)  # it would make a context of its own, on the network
     made.topic_tuples, made.timeout, made._node = [("nothing", EmptyMsg)], LONG, scene.node
-    made._all_came, made._is_subscribed = threading.Event(), False
+    made._all_came, made._is_subscribed, made.qos_profile, made.trigger = threading.Event(), False, 10, None
     return made
 
 

@@ -18,6 +18,7 @@ from typing import Any
 
 from robolink.launch.ros.launch import log_handlers as handlers
 from robolink.launch.ros.launch.bases import LaunchError
+from robolink.system import clocks
 
 __all__ = [
     "get_logger",
@@ -56,7 +57,7 @@ def _get_logging_directory() -> str:
 def _make_unique_log_dir(*, base_path: str) -> str:
     """Make a folder for this run, named by time, host and process, and return its path."""
     while True:
-        now = datetime.datetime.now().astimezone()
+        now = datetime.datetime.fromtimestamp(clocks.time_of_day()).astimezone()
         folder = Path(base_path, f"{now:%Y-%m-%d-%H-%M-%S-%f}-{socket.gethostname()}-{os.getpid()}")
         try:
             folder.mkdir(parents=True)
