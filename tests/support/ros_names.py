@@ -28,6 +28,18 @@ COMPANIONS = [
     "image_transport",
     "launch",
     "launch_ros",
+    "diagnostic_updater",
+    "launch_pytest",
+    "launch_testing",
+    "launch_testing_ros",
+    "launch_xml",
+    "launch_yaml",
+    "nav2_common",
+    "nav2_simple_commander",
+    "rosbag2_py",
+    "rosidl_parser",
+    "turtlesim_msgs",
+    "webots_ros2_driver",
 ]
 
 
