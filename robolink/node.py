@@ -16,6 +16,8 @@ from robolink.client import BaseClient
 from robolink.client import Client as Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
+from robolink.endpoint_info import ServiceEndpointInfo as ServiceEndpointInfo
+from robolink.endpoint_info import TopicEndpointInfo as TopicEndpointInfo
 from robolink.event_handler import PublisherEventCallbacks as PublisherEventCallbacks
 from robolink.event_handler import SubscriptionEventCallbacks as SubscriptionEventCallbacks
 from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
@@ -33,7 +35,7 @@ from robolink.interfaces.rcl_interfaces.msg import SetParametersResult as SetPar
 from robolink.logging import get_logger
 from robolink.node_parts import rosout
 from robolink.node_parts.entities import EntityStore, destroy
-from robolink.node_parts.graph_queries import endpoints_of_topic, of_node
+from robolink.node_parts.graph_queries import endpoints_of_service, endpoints_of_topic, of_node
 from robolink.node_parts.making import make_client, make_publisher, make_service, make_subscription
 from robolink.node_parts.names import overrides_of, own_name
 from robolink.node_parts.parameters import (
@@ -58,7 +60,6 @@ from robolink.time_source import TimeSource
 from robolink.timer import Rate as Rate
 from robolink.timer import Timer as Timer
 from robolink.timer import period_ns
-from robolink.topic_endpoint_info import TopicEndpointInfo
 from robolink.type_description_service import TypeDescriptionService
 from robolink.type_support import MsgT as MsgT
 from robolink.utilities import get_default_context
@@ -782,6 +783,32 @@ class BaseNode(Destroyable):
         """
         name = topic_name if no_mangle else self.resolve_topic_name(topic_name)
         return endpoints_of_topic(self._graph_, name, EndpointKind.SUBSCRIPTION)
+
+    def get_servers_info_by_service(self, service_name: str, no_mangle: bool = False) -> list[ServiceEndpointInfo]:
+        """Return all servers of a service, each with its node, type, hash, gid and profile.
+
+        Args:
+            service_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            no_mangle: True takes the name as it stands.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
+        name = service_name if no_mangle else self.resolve_service_name(service_name)
+        return endpoints_of_service(self._graph_, name, EndpointKind.SERVICE)
+
+    def get_clients_info_by_service(self, service_name: str, no_mangle: bool = False) -> list[ServiceEndpointInfo]:
+        """Return all clients of a service, each with its node, type, hash, gid and profile.
+
+        Args:
+            service_name: Name of the service, relative to the node's namespace unless it begins with a slash; remapped.
+            no_mangle: True takes the name as it stands.
+
+        Raises:
+            InvalidServiceNameException: (a ValueError) if the name is against ROS 2's rules.
+        """
+        name = service_name if no_mangle else self.resolve_service_name(service_name)
+        return endpoints_of_service(self._graph_, name, EndpointKind.CLIENT)
 
     def count_publishers(self, topic_name: str) -> int:
         """Return the number of publishers of the topic `topic_name`, of any type."""

@@ -1,14 +1,14 @@
-"""Queries of the graph that a node answers: the names and types of another node, and the endpoints of a topic."""
+"""Queries of the graph that a node answers: names and types of another node, endpoints of a topic or service."""
 
 from __future__ import annotations
 
+from robolink.endpoint_info import EndpointTypeEnum, ServiceEndpointInfo, TopicEndpointInfo
 from robolink.exceptions import NodeNameNonExistentError, nearest
 from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
 from robolink.qos import resolved
 from robolink.text.names import join
-from robolink.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from robolink.type_hash import TypeHash
-from robolink.wire import EndpointKind
+from robolink.wire import EndpointKind, EndpointToken
 
 
 def of_node(graph: Graph, name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
@@ -37,7 +37,28 @@ def endpoints_of_topic(graph: Graph, topic: str, kind: EndpointKind) -> list[Top
     ]
 
 
+def endpoints_of_service(graph: Graph, service: str, kind: EndpointKind) -> list[ServiceEndpointInfo]:
+    """Return the servers or the clients of a service, given by its full name."""
+    return [service_endpoint(gid, each) for gid, each in graph.gids(kind, service)]
+
+
+def service_endpoint(gid: bytes, token: EndpointToken) -> ServiceEndpointInfo:
+    """Return the description of a server or client."""
+    return ServiceEndpointInfo(
+        node_name=token.node_name,
+        node_namespace=token.namespace,
+        service_type=token.type_name,
+        service_type_hash=TypeHash.from_text(token.type_hash),
+        qos_profiles=[resolved(token.qos)],
+        endpoint_gids=[list(gid)],
+        endpoint_type=_ENDS[token.kind],
+        endpoint_count=1,
+    )
+
+
 _ENDS = {
-    EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,
-    EndpointKind.SUBSCRIPTION: TopicEndpointTypeEnum.SUBSCRIPTION,
+    EndpointKind.PUBLISHER: EndpointTypeEnum.PUBLISHER,
+    EndpointKind.SUBSCRIPTION: EndpointTypeEnum.SUBSCRIPTION,
+    EndpointKind.CLIENT: EndpointTypeEnum.CLIENT,
+    EndpointKind.SERVICE: EndpointTypeEnum.SERVER,
 }

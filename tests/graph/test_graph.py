@@ -13,7 +13,8 @@ import pytest
 
 from robolink import Context, Node
 from robolink.duration import Duration
-from robolink.exceptions import NodeNameNonExistentError
+from robolink.endpoint_info import EndpointTypeEnum
+from robolink.exceptions import InvalidServiceNameException, NodeNameNonExistentError
 from robolink.graph.graph import EVERY, Graph
 from robolink.impl.log_output import Record
 from robolink.interfaces.std_msgs.msg import Int32, String
@@ -27,7 +28,6 @@ from robolink.qos import (
     ReliabilityPolicy,
     resolved,
 )
-from robolink.topic_endpoint_info import TopicEndpointTypeEnum
 from robolink.transport.memory import Bus, MemoryTransport
 from robolink.wire import EndpointKind, EndpointToken, NodeToken, format_token
 from tests.support.programs import Program
@@ -165,8 +165,8 @@ def test_who_publishes_and_who_subscribes(talker: Node, listener: Node) -> None:
     assert (subscription.node_name, subscription.node_namespace) == ("listener", "/")
     assert {publisher.topic_type, subscription.topic_type} == {"std_msgs/msg/Int32"}
     assert str(publisher.topic_type_hash) == str(subscription.topic_type_hash) == type_hash(Int32)
-    assert publisher.endpoint_type is TopicEndpointTypeEnum.PUBLISHER
-    assert subscription.endpoint_type is TopicEndpointTypeEnum.SUBSCRIPTION
+    assert publisher.endpoint_type is EndpointTypeEnum.PUBLISHER
+    assert subscription.endpoint_type is EndpointTypeEnum.SUBSCRIPTION
     sender = talker.context.graph.endpoint_of(bytes(publisher.endpoint_gid))
     assert sender is not None
     assert sender.full_node_name == "/left/talker"
@@ -178,6 +178,29 @@ def test_who_publishes_and_who_subscribes(talker: Node, listener: Node) -> None:
     ]
     assert talker.get_publishers_info_by_topic("count", no_mangle=True) == []
     assert listener.get_publishers_info_by_topic("count") == []
+
+
+def test_who_serves_and_who_calls(talker: Node, listener: Node) -> None:
+    talker.create_service(Trigger, "reset", lambda request, response: response)
+    listener.create_client(Trigger, "/left/reset", qos_profile=QoSProfile(depth=3))
+    (server,) = talker.get_servers_info_by_service("reset")
+    (client,) = listener.get_clients_info_by_service("/left/reset")
+    assert (server.node_name, server.node_namespace) == ("talker", "/left")
+    assert (client.node_name, client.node_namespace) == ("listener", "/")
+    assert {server.service_type, client.service_type} == {"std_srvs/srv/Trigger"}
+    assert str(server.service_type_hash) == str(client.service_type_hash) == type_hash(Trigger)
+    assert server.endpoint_type is EndpointTypeEnum.SERVER
+    assert client.endpoint_type is EndpointTypeEnum.CLIENT
+    assert (server.endpoint_count, client.endpoint_count) == (1, 1)
+    served = talker.context.graph.endpoint_of(bytes(server.endpoint_gids[0]))
+    assert served is not None
+    assert served.full_node_name == "/left/talker"
+    assert [each.depth for each in client.qos_profiles] == [3]
+    assert talker.get_clients_info_by_service("/left/reset", no_mangle=True) == [client]
+    assert talker.get_clients_info_by_service("reset", no_mangle=True) == []
+    assert listener.get_servers_info_by_service("reset") == []
+    with pytest.raises(InvalidServiceNameException):
+        talker.get_servers_info_by_service("13")
 
 
 def test_a_full_profile_is_told(talker: Node) -> None:

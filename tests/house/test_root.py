@@ -14,6 +14,7 @@ TESTS = Path(__file__).parents[1]
 RCLPY = TESTS / "data" / "rclpy_api.json"
 OWN = {
     "__main__": "python -m robolink",
+    "endpoint_info": "a module of rclpy of 2026",
     "spinning": "what stands in rclpy's own __init__: init, spin, shutdown",
     "subscription_content_filter_options": "a module of rclpy 9",
     "type_lookup": "types that other nodes describe: it belongs to no room below the node, and has no sister",

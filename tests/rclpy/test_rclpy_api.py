@@ -62,7 +62,7 @@ OTHERWISE = {
     "subscription.Subscription.__init__": "made by Node.create_subscription; rclpy's takes a C handle",
     "event_handler.*EventHandler.__init__": "made by the event callbacks; rclpy's takes a C handle",
     "*.__exit__": "what ended the block changes nothing: the three are one *args",
-    "topic_endpoint_info.TopicEndpointInfo.__init__": "None stands for a new TypeHash: rclpy's default is one for all",
+    "*.TopicEndpointInfo.__init__": "None stands for a new TypeHash: rclpy's default is one for all",
 }
 """Whose parameters are others on purpose, and why."""
 
@@ -238,6 +238,7 @@ _state_machine _subscriptions _time_source _timers _type_description_service han
 
 SINCE_LYRICAL = """
 get_action_names_and_types get_action_client_names_and_types_by_node get_action_server_names_and_types_by_node
+get_servers_info_by_service get_clients_info_by_service
 """
 """Names that a node has since rclpy of 2026, which the list of rclpy 8 does not have."""
 

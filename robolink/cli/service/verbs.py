@@ -10,16 +10,17 @@ from robolink.cli.shared.graph import absolute, announced, domains_with, hint
 from robolink.cli.shared.messages import GivenRequest, message_of, service_type
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import looking, node_of, opened
+from robolink.endpoint_info import dotted
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces import find, is_named
 from robolink.interfaces.service_msgs.msg import ServiceEventInfo
+from robolink.node_parts.graph_queries import service_endpoint
 from robolink.qos import qos_profile_services_default
 from robolink.service_introspection import SUFFIX
 from robolink.system import clocks
 from robolink.system.terminal import shown
 from robolink.task import Future
-from robolink.topic_endpoint_info import qos_lines
 from robolink.wire import EndpointKind, EndpointToken, gid_of
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class End(NamedTuple):
     """A server or client, and its gid."""
 
     token: EndpointToken
-    gid: str
+    gid: bytes
 
 
 def show(service: str, *, verbose: bool, as_json: bool) -> None:
@@ -50,17 +51,17 @@ def show(service: str, *, verbose: bool, as_json: bool) -> None:
         say_json({"name": absolute(service), "types": types, **_as_json(ends)})
         return
     more = "\n" if verbose else ""
-    say(f"Type: {types[0] if len(types) == 1 else types}{more}")
+    say(f"Type: {types[0] if len(types) == 1 else types}")
     for kind, title in TITLES.items():
         of_kind = [each for each in ends if each.token.kind is kind]
         say(f"{title}: {len(of_kind)}{more}")
         for each in of_kind if verbose else ():
-            say(f"{described(each)}\n")
+            say(f"{service_endpoint(each.gid, each.token)}\n")
 
 
 def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
     found = [
-        End(each, ".".join(f"{byte:02x}" for byte in gid_of(text)))
+        End(each, gid_of(text))
         for text, each in tokens.items()
         if isinstance(each, EndpointToken) and each.kind in TITLES
     ]
@@ -70,26 +71,10 @@ def _ends(tokens: dict[str, Token], name: str, where: str) -> list[End]:
     return sorted(ends, key=lambda each: (each.token.full_node_name, each.gid))
 
 
-def described(end: End) -> str:
-    """Return the lines that ros2 prints for an endpoint."""
-    token = end.token
-    return "\n".join(
-        [
-            f"Node name: {token.node_name}",
-            f"Node namespace: {token.namespace}",
-            f"Service type: {token.type_name}",
-            f"Service type hash: {token.type_hash}",
-            f"Endpoint type: {ROLES[token.kind]}",
-            f"GID: {end.gid}",
-            *qos_lines(token.qos),
-        ]
-    )
-
-
 def _as_json(ends: list[End]) -> dict[str, list[dict[str, str]]]:
     return {
         f"{role.lower()}s": [
-            {"node": token.full_node_name, "type": token.type_name, "hash": token.type_hash, "gid": gid}
+            {"node": token.full_node_name, "type": token.type_name, "hash": token.type_hash, "gid": dotted(gid)}
             for token, gid in ends
             if token.kind is kind
         ]

@@ -22,12 +22,12 @@ from robolink.cli.shared.graph import (
 from robolink.cli.shared.output import say, say_json, tell
 from robolink.cli.shared.session import ReportedLosses, looking
 from robolink.duration import Infinite
+from robolink.endpoint_info import qos_lines
 from robolink.exceptions import MessageError, NotFoundError, nearest
 from robolink.graph.graph import names_and_types
 from robolink.interfaces import is_named
 from robolink.qos import QoSProfile
 from robolink.system.terminal import shown
-from robolink.topic_endpoint_info import qos_lines
 from robolink.validate_full_topic_name import validate_full_topic_name
 from robolink.wire import BridgeToken, EndpointKind, EndpointToken, gid_of
 

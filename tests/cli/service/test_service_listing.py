@@ -100,9 +100,10 @@ def test_info_counts_both_sides(capsys: Captured) -> None:
 def test_info_shows_who_serves_and_calls(capsys: Captured) -> None:
     assert main(["service", "info", "-v", "/reset"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[:5] == ["Type: std_srvs/srv/Trigger", "", "Clients count: 1", "", "Node name: robot"]
+    assert lines[:4] == ["Type: std_srvs/srv/Trigger", "Clients count: 1", "", "Node name: robot"]
     assert f"Service type hash: {type_hash(Trigger)}" in lines
     assert [each for each in lines if "Endpoint type" in each] == ["Endpoint type: CLIENT", "Endpoint type: SERVER"]
+    assert lines.count("Endpoint count: 1") == 2
     assert lines[-9:-7] == ["QoS profile:", "  Reliability: RELIABLE"]
 
 
