@@ -141,7 +141,7 @@ class Namespaced(Protocol):
     def name(self) -> str: ...
 
 
-def import_message_from_namespaced_type(message_type: Namespaced) -> Any:
+def import_message_from_namespaced_type(message_type: Namespaced | AbstractNestedType) -> Any:
     """Return the class of `message_type`; also of the parts of an action, ``Fibonacci_FeedbackMessage``.
 
     An array or a sequence stands for its elements, with a DeprecationWarning.

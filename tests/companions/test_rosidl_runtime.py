@@ -325,5 +325,5 @@ def test_slot_types_are_rosidls_and_lead_back_to_the_fields(kind: type[Any]) -> 
 
 def test_the_class_of_the_elements_of_a_sequence() -> None:
     with pytest.warns(DeprecationWarning, match="NamespacedType object directly"):
-        found = import_message_from_namespaced_type(BoundedSequence(NamespacedType(("std_msgs", "msg"), "Header"), 3))  # type: ignore[arg-type]
+        found = import_message_from_namespaced_type(BoundedSequence(NamespacedType(("std_msgs", "msg"), "Header"), 3))
     assert found is Header

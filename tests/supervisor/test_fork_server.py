@@ -91,7 +91,7 @@ class Started:
         self.child = Child(process, lifeline, server)
         self.lines: SimpleQueue[bytes] = SimpleQueue()
         self.codes: SimpleQueue[int] = SimpleQueue()
-        self.child.watch(lambda name, line: self.lines.put(line), lambda name, code: self.codes.put(code))  # type: ignore[arg-type]
+        self.child.watch(lambda name, line, fd=None: self.lines.put(line), lambda name, code: self.codes.put(code))
 
     def line(self) -> str:
         return self.lines.get(timeout=PATIENCE).decode().strip()
@@ -248,7 +248,7 @@ def test_only_what_the_server_can_become_is_left_to_it(script: Path, server: For
     ):
         with closing(Lifeline()) as lifeline:
             child = Child(unlike, lifeline, server)
-            child.watch(lambda name, line: None, lambda name, code: None)  # type: ignore[arg-type]
+            child.watch(lambda name, line, fd=None: None, lambda name, code: None)
             child.ask(KILL)
         assert server._process is None
 

@@ -76,7 +76,7 @@ def test_a_process_of_which_the_guardian_was_not_told_yet_is_known_by_its_lifeli
         guardian = Guardian(lifeline.mark, patience=0.0)
         child = Child(Process("a", [sys.executable, "-c", "import time; time.sleep(100)"]), lifeline)
         ended = threading.Event()
-        child.watch(lambda name, line: None, lambda name, code: ended.set())  # type: ignore[arg-type]
+        child.watch(lambda name, line, fd=None: None, lambda name, code: ended.set())
         process = guardian._process
         assert process is not None
         assert process.stdin is not None
@@ -96,7 +96,7 @@ def test_a_guardian_that_was_killed_is_followed_by_another_one() -> None:
         guardian = Guardian(patience=0.0)
         child = Child(Process("a", [sys.executable, "-c", "import time; time.sleep(100)"]), lifeline)
         ended = threading.Event()
-        child.watch(lambda name, line: None, lambda name, code: ended.set())  # type: ignore[arg-type]
+        child.watch(lambda name, line, fd=None: None, lambda name, code: ended.set())
         guardian.guard(child.group)
         first = guardian._process
         assert first is not None

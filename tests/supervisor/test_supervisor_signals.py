@@ -217,7 +217,7 @@ def test_a_process_that_stands_still_is_let_go_on_to_obey() -> None:
     with closing(Lifeline()) as lifeline:
         child = Child(python("a", "os.kill(os.getpid(), signal.SIGSTOP)\n" + DOZE), lifeline)
         ended = threading.Event()
-        child.watch(lambda name, line: None, lambda name, code: ended.set())  # type: ignore[arg-type]
+        child.watch(lambda name, line, fd=None: None, lambda name, code: ended.set())
         assert wait_until(lambda: state(child.group) == "T")
         child.ask(INTERRUPT)
         has_obeyed = ended.wait(PATIENCE)

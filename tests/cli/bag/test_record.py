@@ -19,6 +19,7 @@ from robolink.bag.writer import BagWriter
 from robolink.cli.bag import recorder
 from robolink.cli.bag.recorder import clock, progress, summary
 from robolink.cli.main import main
+from robolink.cli.shared.session import opened as opened_session
 from robolink.interfaces.rosbag2_interfaces.msg import WriteSplitEvent
 from robolink.interfaces.rosbag2_interfaces.srv import (
     IsDiscoveryRunning,
@@ -43,11 +44,10 @@ PATIENCE = 30.0
 @pytest.fixture
 def robot(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Node]:
     monkeypatch.chdir(tmp_path)
-    real = recorder.opened  # type: ignore[attr-defined]
 
     @contextmanager
     def opened(enclave: str) -> Iterator[Any]:
-        with real(enclave) as context:
+        with opened_session(enclave) as context:
             OPENED.append(context)
             yield context
 
