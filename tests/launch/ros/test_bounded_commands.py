@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from robolink.launch.ros.launch import LaunchContext
-from robolink.launch.ros.launch import substitutions as commands
+from robolink.launch.ros.launch import LaunchContext, commands
 from robolink.launch.ros.launch.substitutions import Command, FileContent, SubstitutionFailure
 
 

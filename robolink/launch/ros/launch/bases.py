@@ -26,6 +26,10 @@ class LaunchError(RobolinkError, RuntimeError):
     """A launch file cannot be carried out; the text has the reason in one line."""
 
 
+class SubstitutionFailure(LaunchError):  # noqa: N818 - ROS 2's name
+    """A substitution has no value; the text has the reason."""
+
+
 class LaunchArgumentError(LaunchError, TypeError):
     """An argument of an action or a substitution has the wrong type, or there is none of its name."""
 
