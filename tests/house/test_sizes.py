@@ -15,7 +15,7 @@ CODE = ("robolink", "nodes", "tools", "benchmarks")
 """Folders of Python code, besides the tests: those hold programs of some length inside of functions."""
 LONGEST_FILE, LONGEST_BODY = 600, 40
 """Most lines of a file, and of a function without its signature and its docstring."""
-LONG_WITH_DOCSTRINGS = ("robolink/launch/ros/launch/substitutions.py", "robolink/node.py")
+LONG_WITH_DOCSTRINGS = ("robolink/node.py",)
 """Files whose docstrings and blank lines do not count."""
 
 LONG = re.compile(rf"^( *)(?:async )?def .*\n(?:(?:\1[ )].*)?\n){{{LONGEST_BODY},}}", re.MULTILINE)
