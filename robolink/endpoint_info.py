@@ -220,7 +220,14 @@ def _same(one: object, other: object, fields: dict[str, type]) -> bool:
 
 
 def dotted(gid: Iterable[int]) -> str:
-    """Return a global id as text, two digits for each byte: ``01.0f.ff``."""
+    """Return a global id as text.
+
+    Args:
+        gid: Its bytes.
+
+    >>> dotted(bytes([1, 15, 255]))
+    '01.0f.ff'
+    """
     return ".".join(f"{byte:02x}" for byte in gid)
 
 

@@ -86,17 +86,33 @@ def list_parameters(
 
 @app.command("get")
 def get(
-    node: Node,
-    parameter: Parameter,
+    ctx: typer.Context,
+    node: Annotated[
+        str,
+        typer.Argument(
+            help="Name of the node, such as /driver; all nodes if only a PARAMETER follows.",
+            metavar="[NODE]",
+            autocompletion=complete.node_names,
+        ),
+    ],
+    parameters: Annotated[
+        list[str] | None,
+        typer.Argument(help="Names of parameters.", metavar="PARAMETER...", autocompletion=_parameters),
+    ] = None,
     hidden: Hidden = False,
     hide_type: Annotated[bool, typer.Option("--hide-type", help="Print the value without its type.")] = False,
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
 ) -> None:
-    """Print the value of a parameter."""
+    """Print the values of parameters of a node, or of one parameter of all nodes."""
     from robolink.cli.param import verbs
 
-    verbs.show_value(node, parameter, timeout, hide_type=hide_type, as_json=as_json)
+    if parameters:
+        verbs.show_values(node, parameters, timeout, hide_type=hide_type, as_json=as_json)
+    elif node.startswith("/"):
+        ctx.fail("Missing argument 'PARAMETER...'")
+    else:
+        verbs.show_value_of_all(node, hidden_nodes=hidden, hide_type=hide_type, as_json=as_json)
 
 
 @app.command("describe")
@@ -126,17 +142,29 @@ def dump(node: Node, hidden: Hidden = False, timeout: Timeout = 1.0, as_json: As
 # A value such as -0.5 is not an option.
 @app.command("set", context_settings={"ignore_unknown_options": True})
 def set_parameter(
+    ctx: typer.Context,
     node: Node,
     parameter: Parameter,
     value: Annotated[str, typer.Argument(help="Value in YAML, such as 0.5, true or [1, 2].", metavar="VALUE")],
+    more: Annotated[
+        list[str] | None,
+        typer.Argument(help="Further parameters, each with its value.", metavar="PARAMETER VALUE..."),
+    ] = None,
     hidden: Hidden = False,
     timeout: Timeout = 1.0,
     as_json: AsJson = False,
 ) -> None:
-    """Set a parameter."""
+    """Set parameters."""
     from robolink.cli.param import verbs
 
-    raise typer.Exit(verbs.set_one(node, parameter, value, timeout, as_json=as_json))
+    rest = more or []
+    for each in rest[::2]:
+        if each.startswith("-"):
+            ctx.fail(f"No such option: {each}")
+    if len(rest) % 2:
+        ctx.fail(f"{rest[-1]} has no value: expected NODE PARAMETER VALUE [PARAMETER VALUE]...")
+    texts = {parameter: value, **dict(zip(rest[::2], rest[1::2], strict=True))}
+    raise typer.Exit(verbs.set_each(node, texts, timeout, as_json=as_json))
 
 
 @app.command("load")

@@ -6,9 +6,9 @@ import contextlib
 import queue
 import re
 import threading
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import typer
 
@@ -161,6 +161,8 @@ class Requested(NamedTuple):
     hidden_nodes: bool = False
 
 
+AnswerT = TypeVar("AnswerT")
+
 Found = dict[str, str]
 """Names of parameters, each with its type, which is empty unless it is wanted."""
 
@@ -179,7 +181,7 @@ def show_list(node: str, requested: Requested, *, as_json: bool) -> None:
         with asking(node, 0.0) as client:
             found = {client.name: _names_and_types(client, requested)}
     else:
-        found = _of_all(requested)
+        found = _of_all(lambda client: _names_and_types(client, requested), requested.hidden_nodes)
     if as_json:
         say(messages.as_json({name: each if requested.types else list(each) for name, each in found.items()}))
         return
@@ -191,16 +193,16 @@ def show_list(node: str, requested: Requested, *, as_json: bool) -> None:
             say(fit(line, lines=False))
 
 
-def _of_all(requested: Requested) -> dict[str, Found]:
-    """Return the parameters of all nodes, asked at once. Those that do not answer are noted on standard error."""
+def _of_all(ask: Callable[[ParameterClient], AnswerT], hidden_nodes: bool) -> dict[str, AnswerT]:
+    """Return the answer of every node, asked at once. Those that do not answer are noted on standard error."""
     from concurrent.futures import ThreadPoolExecutor
 
     with looking() as context:
         names = sorted({each.full_node_name for each in context.graph.nodes()})
-        names = [name for name in names if serves(context, name) and (requested.hidden_nodes or not is_hidden(name))]
+        names = [name for name in names if serves(context, name) and (hidden_nodes or not is_hidden(name))]
         asker = node_of(context)
         with ThreadPoolExecutor(max_workers=max(1, min(32, len(names)))) as pool:
-            futures = {name: pool.submit(_names_and_types, ParameterClient(asker, name), requested) for name in names}
+            futures = {name: pool.submit(ask, ParameterClient(asker, name)) for name in names}
         found = {}
         for name, future in futures.items():
             try:
@@ -220,17 +222,47 @@ def _names_and_types(client: ParameterClient, requested: Requested) -> Found:
     return {name: type_name(each.type) for name, each in zip(names, descriptors, strict=True)}
 
 
-def show_value(node: str, parameter: str, timeout: float, *, hide_type: bool, as_json: bool) -> None:
-    """Show one value. Raises NotFoundError if there is no such parameter."""
+def show_values(node: str, parameters: Sequence[str], timeout: float, *, hide_type: bool, as_json: bool) -> None:
+    """Show values of one node. Raises NotFoundError if it lacks one of the parameters."""
     with asking(node, timeout) as client:
-        value = client.values([parameter])[0]
+        values = dict(zip(parameters, client.values(parameters), strict=True))
     if as_json:
-        say(messages.as_json({"name": parameter, "type": type_name(value.type), "value": plain(value)}))
-    elif value.type == Type.NOT_SET:
-        say("Parameter not set.")
-    else:
-        text = str(parameter_value_to_python(value))
-        say(text if hide_type else f"{label(value.type)} {text}")
+        found = [_value_data(name, value) for name, value in values.items()]
+        say(messages.as_json(found[0] if len(parameters) == 1 else found))
+        return
+    for name, value in values.items():
+        text = _value_text(value, hide_type)
+        say(text if len(parameters) == 1 else f"{name}:\n  {text}")
+
+
+def show_value_of_all(parameter: str, *, hidden_nodes: bool, hide_type: bool, as_json: bool) -> None:
+    """Show the value that each node has for a parameter; nodes that lack it are left out."""
+
+    def ask(client: ParameterClient) -> dict[str, ParameterValue]:
+        with contextlib.suppress(NotFoundError):
+            return client.settled_values([parameter])
+        return {}
+
+    found = _of_all(ask, hidden_nodes)
+    values = {node: each[parameter] for node, each in found.items() if each}
+    if as_json:
+        say(messages.as_json({node: _value_data(parameter, value) for node, value in values.items()}))
+        return
+    for node, value in values.items():
+        say(f"{node}:\n  {_value_text(value, hide_type)}")
+    if not values:
+        say(f"Parameter '{shown(parameter)}' not set on any node")
+
+
+def _value_data(name: str, value: ParameterValue) -> dict[str, Any]:
+    return {"name": name, "type": type_name(value.type), "value": plain(value)}
+
+
+def _value_text(value: ParameterValue, hide_type: bool) -> str:
+    if value.type == Type.NOT_SET:
+        return "Parameter not set."
+    text = str(parameter_value_to_python(value))
+    return text if hide_type else f"{label(value.type)} {text}"
 
 
 def show_descriptors(node: str, parameters: Sequence[str], timeout: float, *, as_json: bool) -> None:
@@ -285,14 +317,24 @@ def dump(node: str, timeout: float, *, as_json: bool) -> None:
 UNCHANGED = "it is read-only and has this value already"
 
 
-def set_one(node: str, parameter: str, text: str, timeout: float, *, as_json: bool) -> int:
-    """Set a parameter, and return the exit code. The text is read as the type that the parameter has."""
+def set_each(node: str, texts: dict[str, str], timeout: float, *, as_json: bool) -> int:
+    """Set parameters, and return the exit code. Each text is read as the type that its parameter has."""
     with asking(node, timeout) as client:
-        value = read(text, _descriptor(client, parameter))  # ros2 would refuse `1` for a double
-        result = client.set([Parameter(name=parameter, value=value)])[0]
+        # ros2 would refuse `1` for a double
+        values = {name: read(text, _descriptor(client, name)) for name, text in texts.items()}
+        made = [Parameter(name=name, value=value) for name, value in values.items()]
+        results = dict(zip(texts, client.set(made), strict=True))
+    for name, result in results.items():
         if result.successful:
-            _tell_of_type(parameter, text, get_parameter_value(text).type, value)
-    return _tell(result, as_json, "Set parameter successful", "Setting parameter failed")
+            _tell_of_type(name, texts[name], get_parameter_value(texts[name]).type, values[name])
+    if as_json and len(texts) > 1:
+        say(messages.as_json({name: _plain(result) for name, result in results.items()}))
+        return int(not all(each.successful for each in results.values()))
+    codes = []
+    for name, result in results.items():
+        which = f"{name}: " if len(texts) > 1 else ""
+        codes.append(_tell(result, as_json, f"{which}Set parameter successful", f"{which}Setting parameter failed"))
+    return max(codes)
 
 
 def _tell_of_type(name: str, written: object, type_: int, value: ParameterValue) -> None:

@@ -60,7 +60,9 @@ def find(
 
 @app.command("hz")
 def hz(
-    topics: opt.Topics,
+    ctx: typer.Context,
+    topics: opt.TopicsOrAll = None,
+    every: opt.AllTopics = False,
     window: int = opt.window(10_000),
     filter_: opt.Filter = "",
     wall_time: opt.WallTime = False,
@@ -70,12 +72,14 @@ def hz(
     """Print the publishing rate of topics, once a second."""
     from robolink.cli.topic import meters
 
-    meters.hz(topics, meters.Flags(window, as_json, sim_time and not wall_time), filter_)
+    meters.hz(opt.topics_or_all(ctx, topics, every), meters.Flags(window, as_json, sim_time and not wall_time), filter_)
 
 
 @app.command("bw")
 def bw(
-    topics: opt.Topics,
+    ctx: typer.Context,
+    topics: opt.TopicsOrAll = None,
+    every: opt.AllTopics = False,
     window: int = opt.window(100, least=2),
     sim_time: opt.SimTime = False,
     as_json: opt.AsJson = False,
@@ -83,7 +87,7 @@ def bw(
     """Print the bandwidth of topics, once a second."""
     from robolink.cli.topic import meters
 
-    meters.bw(topics, meters.Flags(window, as_json, sim_time))
+    meters.bw(opt.topics_or_all(ctx, topics, every), meters.Flags(window, as_json, sim_time))
 
 
 @app.command("delay")
@@ -149,6 +153,7 @@ def publish(
     type_: opt.TypeOrValues = "",
     values: opt.Values = None,
     stdin: opt.Stdin = False,
+    yaml_file: opt.YamlFile = "",
     once: opt.PublishOnce = False,
     rate: opt.Rate = 1.0,
     times: opt.Times = 0,
@@ -171,8 +176,8 @@ def publish(
 
     if values is None and opt.are_values(type_):
         type_, values = "", type_
-    opt.refuse_together(ctx, {"--stdin": stdin, "VALUES": values is not None})
+    opt.refuse_together(ctx, {"--stdin": stdin, "--yaml-file": yaml_file, "VALUES": values is not None})
     opt.refuse_together(ctx, {"--once": once, "--times": times})
     flags = opt.flags_of(ctx.params)
     request = Request(rate, 1 if once else times, wait, max_wait, keep_alive, print_every, node_name, flags, sim_time)
-    run(topic, type_, None if stdin else values or "{}", request)
+    run(topic, type_, None if stdin or yaml_file else values or "{}", request, file=yaml_file)

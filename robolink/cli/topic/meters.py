@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import struct
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from robolink.cli.shared.graph import PATIENCE, why_silent
+from robolink.cli.shared.graph import PATIENCE, is_hidden, why_silent
 from robolink.cli.shared.layout import Figures, figures_of
-from robolink.cli.shared.output import say, say_json, tell
+from robolink.cli.shared.output import clear, say, say_json, tell
 from robolink.cli.shared.session import node_of, opened
 from robolink.cli.topic.arrivals import Arrivals, Leniently, Take
 from robolink.exceptions import DecodeError, RobolinkError
 from robolink.system import clocks
 from robolink.time_source import CLOCK_TOPIC
-from robolink.wire import EndpointToken
+from robolink.wire import EndpointKind, EndpointToken
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -127,7 +128,7 @@ class Meter(NamedTuple):
 
 
 def hz(topics: list[str], flags: Flags, filter_text: str) -> None:
-    """Print the rate of messages, only of those that pass a filter, if there is one."""
+    """Print the rate of the messages of topics, of all if there are none; only of those that pass a filter."""
     header = ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]
     with opened() as context:
         take = _filtered(context, filter_text) if filter_text else _noted
@@ -135,7 +136,7 @@ def hz(topics: list[str], flags: Flags, filter_text: str) -> None:
 
 
 def bw(topics: list[str], flags: Flags) -> None:
-    """Print the bandwidth of topics."""
+    """Print the bandwidth of topics, of all if there are none."""
     header = ["topic", "bandwidth", "mean", "min", "max", "messages"]
     nothing = dict.fromkeys(["bytes_per_second", "mean", "min", "max"]) | {"messages": 0}
     with opened() as context:
@@ -162,45 +163,85 @@ def _measure(
 ) -> None:
     node = node_of(context)
     names = list(dict.fromkeys(node.resolve_topic_name(each) for each in topics))
-    windows = {name: Window(flags.window + more) for name in names}
     arrivals = Arrivals(node, clock)
     try:
         timed = _sim_time(context, arrivals) if flags.sim_time else _as_it_is
-        for name, window in windows.items():
-            arrivals.listen(name, lambda publisher, window=window: timed(meter.take(publisher, window)))  # type: ignore[misc]
+        metering = _Metering(context, arrivals, meter, timed, flags.window + more, every=not topics)
+        for name in names:
+            metering.add(name)
             if len(names) > 1 and not flags.json:
                 say(f"Subscribed to [{name}]")
-        _report(context, arrivals, windows, meter, flags)
+        _report(metering, flags)
     finally:
         arrivals.close()
 
 
-def _report(context: Context, arrivals: Arrivals, windows: dict[str, Window], meter: Meter, flags: Flags) -> None:
+class _Metering:
+    """Topics that are measured, each with its window; all of them, new ones too, if `every`."""
+
+    def __init__(
+        self,
+        context: Context,
+        arrivals: Arrivals,
+        meter: Meter,
+        timed: Callable[[Take], Take],
+        size: int,
+        *,
+        every: bool,
+    ) -> None:
+        self.context, self.arrivals, self.meter, self.every = context, arrivals, meter, every
+        self.windows: dict[str, Window] = {}
+        self._timed, self._size = timed, size
+        self.follow()
+
+    def add(self, name: str) -> None:
+        """Measure a topic, named in full."""
+        window = self.windows[name] = Window(self._size)
+        self.arrivals.listen(name, lambda publisher: self._timed(self.meter.take(publisher, window)))
+
+    def follow(self) -> None:
+        """Measure also the topics that are new, if all are wanted; hidden ones are left out, as in `topic list`."""
+        if not self.every:
+            return
+        found = {each.name for each in self.context.graph.endpoints(EndpointKind.PUBLISHER)}
+        for name in sorted(found - self.windows.keys()):
+            if not is_hidden(name):
+                self.add(name)
+
+
+def _report(metering: _Metering, flags: Flags) -> None:
     begin, rounds = clocks.monotonic(), 0
-    explained = False
+    explained = metering.every
     while True:
         rounds += 1
-        arrivals.wait(begin + rounds * PERIOD)
+        metering.arrivals.wait(begin + rounds * PERIOD)
+        meter, windows = metering.meter, metering.windows
         looks = {name: window.look() for name, window in windows.items()}
         reports = {name: meter.report(times, values) if new else None for name, (times, values, new) in looks.items()}
         if flags.json:
             for name, found in reports.items():
                 say_json({"topic": name, **(found.data if found else meter.nothing), "new": looks[name][2]})
         else:
-            _say_reports(meter, windows, reports)
+            _say_reports(metering, reports)
         if not explained and rounds * PERIOD >= PATIENCE:
             explained = True
             for name in (each for each, window in windows.items() if not window.total):
-                tell(why_silent(context, name))
+                tell(why_silent(metering.context, name))
+        metering.follow()
 
 
-def _say_reports(meter: Meter, windows: dict[str, Window], reports: dict[str, Report | None]) -> None:
+def _say_reports(metering: _Metering, reports: dict[str, Report | None]) -> None:
     found = {name: each for name, each in reports.items() if each is not None}
-    if len(windows) > 1 and found:
-        say(table(meter.header, [[name, *each.cells] for name, each in found.items()]))
+    if metering.every and sys.stdout.isatty():
+        clear()
+    if metering.every or len(metering.windows) > 1:
+        if found:
+            say(table(metering.meter.header, [[name, *each.cells] for name, each in found.items()]))
+            return
     elif found:
         say(next(iter(found.values())).text)
-    elif any(window.total for window in windows.values()):
+        return
+    if any(window.total for window in metering.windows.values()):
         say(NO_NEWS)
 
 

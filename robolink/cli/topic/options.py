@@ -34,6 +34,13 @@ def refuse_together(ctx: typer.Context, given: dict[str, object]) -> None:
         ctx.fail(f"{' and '.join(names)} do not go together")
 
 
+def topics_or_all(ctx: typer.Context, topics: list[str] | None, every: bool) -> list[str]:
+    """Return the topics that were named, none for all; end with a usage error unless it is one of both."""
+    if bool(topics) == every:
+        ctx.fail("TOPIC and --all do not go together" if every else "Missing argument 'TOPIC', or --all")
+    return topics or []
+
+
 def are_values(text: str) -> bool:
     """True if the word in the place of a type is a message in YAML: no type has these characters."""
     return ":" in text or text.lstrip().startswith("{")
@@ -42,7 +49,12 @@ def are_values(text: str) -> bool:
 _TOPIC = {"metavar": "TOPIC", "autocompletion": complete.topic_names}
 
 Topic = Annotated[str, typer.Argument(help="Name of the topic, such as /scan.", **_TOPIC)]
-Topics = Annotated[list[str], typer.Argument(help="Names of topics, such as /scan.", **_TOPIC)]
+TopicsOrAll = Annotated[
+    list[str] | None, typer.Argument(help="Names of topics, such as /scan; none with --all.", **_TOPIC)
+]
+AllTopics = Annotated[
+    bool, _flag("--all", "-a", help="Measure all topics, new ones too; the screen is cleared each time.")
+]
 Type = Annotated[
     str,
     typer.Argument(
@@ -118,6 +130,12 @@ NoLost = Annotated[bool, _flag("--no-lost-messages", help="Do not report lost me
 # topic pub
 
 Stdin = Annotated[bool, _flag("--stdin", help="Read the values from standard input.")]
+YamlFile = Annotated[
+    str,
+    typer.Option(
+        "--yaml-file", metavar="FILE", help="Read the messages from this YAML file, such as the output of topic echo."
+    ),
+]
 PublishOnce = Annotated[bool, _flag("--once", "-1", help="Publish one message and exit.")]
 Rate = Annotated[float, typer.Option("--rate", "-r", metavar="HZ", help="Publishing rate in Hz.")]
 Times = Annotated[

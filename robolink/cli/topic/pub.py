@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import pathlib
 import re
 import sys
 from collections.abc import Iterator
@@ -91,7 +92,7 @@ FOUND_WITHIN = 0.5
 
 INPUT = "<standard input>"
 LONGEST_INPUT = 64 * 2**20
-"""Upper bound of standard input, in bytes: a few pictures, as YAML."""
+"""Upper bound of standard input, or of a file, in bytes: a few pictures, as YAML."""
 
 _RULE = re.compile(r"^(?:---|\.\.\.)(?=\s|$)", re.MULTILINE)
 """Separator of the documents of a YAML stream, which `topic echo` writes after each."""
@@ -122,14 +123,19 @@ class Request(NamedTuple):
     sim_time: bool = False
 
 
-def run(topic: str, type_name: str, values: str | None, request: Request) -> None:
-    """Publish the messages in `values`, or on standard input if that is None, in turn."""
+def run(topic: str, type_name: str, values: str | None, request: Request, *, file: str = "") -> None:
+    """Publish the messages in `values`, in a YAML file, or on standard input if there is neither, in turn."""
     if not LOWEST_RATE <= request.rate < float("inf"):
         raise PublishError(f"--rate: expected a number of Hz above 0, got {request.rate:g}")
     wait = (1 if request.times else 0) if request.wait is None else request.wait
     if request.max_wait is not None and not wait:
         raise PublishError("--max-wait-time-secs only says something with --wait-matching-subscriptions, -1 or --times")
-    documents = [parse(values, name="<values>")] if values is not None else list(documents_of(read_input()))
+    if values is not None:
+        documents = [parse(values, name="<values>")]
+    elif file:
+        documents = list(documents_of(read_messages(file), file))
+    else:
+        documents = list(documents_of(read_input()))
     with opened() as context:
         node = node_of(context, request.node_name, describes=True)
         name = node.resolve_topic_name(topic)
@@ -149,23 +155,35 @@ def run(topic: str, type_name: str, values: str | None, request: Request) -> Non
 
 def read_input() -> str:
     """Return standard input to its end. Raises DocumentError if it is not text, or too long."""
-    raw = b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1)
+    return _text(b"" if sys.stdin is None else sys.stdin.buffer.read(LONGEST_INPUT + 1), INPUT)
+
+
+def read_messages(file: str) -> str:
+    """Return the text of a YAML file. Raises DocumentError if it cannot be read, is not text, or too long."""
+    try:
+        with pathlib.Path(file).open("rb") as stream:
+            return _text(stream.read(LONGEST_INPUT + 1), file)
+    except OSError as error:
+        raise DocumentError(f"cannot be read: {error.strerror or error}", file) from None
+
+
+def _text(raw: bytes, name: str) -> str:
     if len(raw) > LONGEST_INPUT:
-        raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", INPUT)
+        raise DocumentError(f"more than {LONGEST_INPUT // 2**20} MiB", name)
     try:
         return decoded(raw)
     except UnicodeDecodeError as error:
         line = raw[: error.start].count(b"\n") + 1
-        raise DocumentError("not UTF-8 text", INPUT, line) from None
+        raise DocumentError("not UTF-8 text", name, line) from None
 
 
-def documents_of(text: str) -> Iterator[Any]:
+def documents_of(text: str, source: str = INPUT) -> Iterator[Any]:
     """Yield each document of a YAML stream that is not empty. Raises DocumentError, also if there is none."""
     parts = [each for each in _RULE.split(text) if each.strip()]
     if not parts:
-        raise DocumentError("there is nothing to publish in it", INPUT)
+        raise DocumentError("there is nothing to publish in it", source)
     for number, each in enumerate(parts, start=1):
-        yield parse(each.removeprefix("\n"), name=INPUT if len(parts) == 1 else f"{INPUT}, document {number}")
+        yield parse(each.removeprefix("\n"), name=source if len(parts) == 1 else f"{source}, document {number}")
 
 
 def _type_of(context: Context, name: str, given: str) -> type[Any]:

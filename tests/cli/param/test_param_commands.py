@@ -180,7 +180,9 @@ def test_a_server_that_has_gone_is_told_at_once(robot: Node, capsys: Captured) -
     [
         ["list", "--filter", "("],
         ["get", "/lab/driver"],
+        ["get"],
         ["set", "/lab/driver", "speed"],
+        ["set", "/lab/driver", "speed", "1", "name"],
         ["set", "/lab/driver", "speed", "1", "--timeut", "3"],
         ["get", "/lab/driver", "speed", "--timeout", "-1"],
         ["describe", "/lab/driver"],
@@ -192,6 +194,42 @@ def test_wrong_usage_is_one_line_and_2(words: list[str], capsys: Captured) -> No
     assert main(["param", *words]) == 2
     said, told = capsys.readouterr()
     assert (said, told.count("\n")) == ("", 1)
+
+
+@pytest.mark.usefixtures("driver")
+def test_several_values_of_a_node_are_shown_under_their_names(capsys: Captured) -> None:
+    assert main(["param", "get", "/lab/driver", "speed", "arm.length"]) == 0
+    assert capsys.readouterr() == ("speed:\n  Double value is: 1.0\narm.length:\n  Integer value is: 3\n", "")
+    assert main(["param", "get", "/lab/driver", "speed", "name", "--json"]) == 0
+    assert [each["name"] for each in json.loads(capsys.readouterr().out)] == ["speed", "name"]
+
+
+@pytest.mark.parametrize(
+    ("words", "shown"),
+    [
+        (["speed"], "/lab/driver:\n  Double value is: 1.0\n/other:\n  Integer value is: 7\n"),
+        (["speed", "--hide-type"], "/lab/driver:\n  1.0\n/other:\n  7\n"),
+        (["name"], "/lab/driver:\n  String value is: 1e3\n"),
+        (["sped"], "Parameter 'sped' not set on any node\n"),
+        (["unset"], "Parameter 'unset' not set on any node\n"),
+    ],
+)
+def test_a_parameter_of_all_nodes(driver: Node, words: list[str], shown: str, capsys: Captured) -> None:
+    other = Node("other", context=driver.context)
+    other.declare_parameter("speed", 7)
+    with spinning(other):
+        assert main(["param", "get", *words]) == 0
+    assert capsys.readouterr() == (shown, "")
+
+
+def test_several_parameters_are_set(driver: Node, capsys: Captured) -> None:
+    assert main(["param", "set", "/lab/driver", "speed", "0.5", "free", "-3"]) == 0
+    assert capsys.readouterr() == ("speed: Set parameter successful\nfree: Set parameter successful\n", "")
+    assert (driver.get_parameter("speed").value, driver.get_parameter("free").value) == (0.5, -3)
+    assert main(["param", "set", "/lab/driver", "arm.length", "4", "speed", "1.5", "--json"]) == 1
+    results = json.loads(capsys.readouterr().out)
+    assert {name: each["successful"] for name, each in results.items()} == {"arm.length": False, "speed": True}
+    assert driver.get_parameter("speed").value == 1.5
 
 
 def test_the_node_is_waited_for(robot: Node, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:

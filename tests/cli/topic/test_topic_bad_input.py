@@ -154,6 +154,8 @@ def test_a_bad_environment_is_one_line_and_1(
         (["topic", "echo", "/x", "--raw", "--field", "a"], "--raw and --field or --filter do not go together"),
         (["topic", "echo", "/x", "-l", "-1"], "Invalid value for '--truncate-length' / '-l': -1 is not in the range"),
         (["pub", "/x", "Twist", "{}", "--stdin"], "--stdin and VALUES do not go together"),
+        (["pub", "/x", "Twist", "--stdin", "--yaml-file", "a"], "--stdin and --yaml-file do not go together"),
+        (["topic", "bw", "/x", "--all"], "TOPIC and --all do not go together"),
         (["pub", "/x", "Twist", "-1", "-t", "2"], "--once and --times do not go together"),
         (
             ["pub", "/x", "Twist", "--qos-reliability", "relable"],

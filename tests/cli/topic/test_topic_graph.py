@@ -257,7 +257,7 @@ def test_what_cannot_be_read_hides_nothing_else(node: Node, capsys: Captured) ->
     ("argument", "completes"),
     [
         (topic_options.Topic, complete.topic_names),
-        (topic_options.Topics, complete.topic_names),
+        (topic_options.TopicsOrAll, complete.topic_names),
         (topic_options.Type, complete.message_types),
         (topic_options.TypeOfTopic, complete.type_of_topic),
         (topic_options.TypeOrValues, complete.type_of_topic),

@@ -104,6 +104,31 @@ def test_several_topics_make_a_table(
     assert len({len(line) for line in lines[2:6]}) == 1
 
 
+@pytest.mark.parametrize("verb", ["hz", "bw"])
+def test_all_topics_are_measured_new_ones_too(
+    verb: str, publishing: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    publishing("/a", Int32)
+    publishing("/_hidden", Int32)
+    came: list[bool] = []
+
+    def on_said(said: str) -> None:
+        rows = [line.split()[0] for line in said.splitlines()[2:]]
+        if "/a" in rows and not came:
+            came.append(True)
+            publishing("/new", String)
+        elif rows == ["/a", "/new"]:
+            press_ctrl_c(said)
+
+    when_said(monkeypatch, meters, "say", on_said)
+    assert main(["topic", verb, "--all"]) == 130
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "Subscribed" not in out
+    assert "/_hidden" not in out
+    assert "\x1b" not in out  # not a terminal
+
+
 def test_a_filter_counts_only_what_passes(
     publishing: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:

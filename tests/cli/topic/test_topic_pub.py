@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -114,6 +115,36 @@ def test_several_messages_are_published_in_turn(node: Node, monkeypatch: pytest.
     typed(monkeypatch, b"data: 1\n---\ndata: 2\n")
     assert main(["pub", "/count", "--stdin", "-t", "5", "-r", "500"]) == 0
     assert [each.data for each in taken(node, got, 5)] == [1, 2, 1, 2, 1]
+
+
+def test_messages_of_a_file_are_published_in_turn(node: Node, tmp_path: Path) -> None:
+    got = received(node, Int32, "/count")
+    file = tmp_path / "counts.yaml"
+    file.write_bytes(b"data: 1\n---\ndata: 2\n---\n")
+    assert main(["pub", "/count", "--yaml-file", str(file), "-t", "3", "-r", "500"]) == 0
+    assert [each.data for each in taken(node, got, 3)] == [1, 2, 1]
+
+
+@pytest.mark.parametrize(
+    ("content", "report"),
+    [
+        (None, "cannot be read: No such file or directory"),
+        (b"", "there is nothing to publish in it"),
+        (b"data: 1\ndata: \xff\n", "not UTF-8 text"),
+        (b"data: 1\n---\ndata: {\n", "document 2"),
+    ],
+)
+def test_a_file_that_cannot_be_published_is_told(
+    node: Node, content: bytes | None, report: str, tmp_path: Path, capsys: Captured
+) -> None:
+    file = tmp_path / "counts.yaml"
+    if content is not None:
+        file.write_bytes(content)
+    assert main(["pub", "/count", "Int32", "--yaml-file", str(file), "-1", "-w", "0"]) == 1
+    said, told = capsys.readouterr()
+    assert (said, told.count("\n")) == ("", 1)
+    assert report in told
+    assert "counts.yaml" in told
 
 
 def test_what_echo_shows_can_be_published_again(node: Node, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
