@@ -3,7 +3,8 @@
     git clone https://github.com/ros2/rclpy
     python tools/peer_tests.py rclpy rclpy [--file test_node.py] [--transport memory] [--markdown]
     git clone https://github.com/ros2/launch
-    python tools/peer_tests.py launch_xml launch
+    pip install osrf-pycommon  # which tests of launch and launch_ros import
+    python tools/peer_tests.py launch launch
 
 A suite is a file in `peer_reasons`: which folder of a checkout has the tests, and why a test does not pass here. The
 tests are copied to a folder that is removed afterwards: nothing is written into the checkout. Each file runs in a

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from pathlib import Path
 
 import pytest
@@ -111,6 +112,20 @@ def test_both_say_the_same(package: Path, text: str, name: str) -> None:
     assert system.notes[1].startswith(f"{name}:{line}: left out: controller_manager spawner")
     (argument,) = arguments_of(package / "launch" / name)
     assert argument == type(argument)("word", "hello", "The word.", ("hello", "ho"))
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("<launch>\n<node exec='{}' name='n'/></launch>", "bot.launch.xml"),
+        ("launch:\n- node: {{exec: {}, name: n}}\n", "bot.launch.yaml"),
+    ],
+)
+def test_a_node_without_a_package_is_a_program_by_its_path(package: Path, text: str, name: str) -> None:
+    (started,) = load(package, text.format(sys.executable), name).entries
+    assert started.name == "n"
+    assert started.source.path
+    assert started.source.path.samefile(sys.executable)
 
 
 def test_files_of_all_kinds_include_each_other(package: Path, system: System) -> None:

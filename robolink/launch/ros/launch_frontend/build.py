@@ -215,7 +215,7 @@ def _node(reading: Reading) -> Arguments:
     return {
         **shared,
         "exec_name": shared["name"],
-        "package": reading.needed("pkg"),
+        "package": reading.parsed("pkg"),
         "executable": reading.needed("exec"),
         "name": reading.parsed("name"),
         "namespace": reading.parsed("namespace"),
