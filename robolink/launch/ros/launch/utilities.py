@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -194,21 +193,6 @@ SCALARS = (bool, int, float, str)
 AS_TEXT = "ParameterValue(..., value_type=str) keeps it a text"
 
 
-def value_in(text: str) -> Any:
-    """Return the value that `text` spells in YAML: a scalar, or a list of one type.
-
-    Raises LaunchError for what is not YAML, and for a date, a null, a mapping and a list of several types.
-    """
-    if not text:
-        return text
-    try:
-        value = yaml.safe_load(text)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        problem = getattr(error, "problem", None) or "it is not valid YAML"
-        raise LaunchError(f"'{shown(text, 60)}' is not a parameter's value: {problem}; {AS_TEXT}") from None
-    return checked(value, text)
-
-
 def checked(value: Any, text: object) -> Any:
     """Return a `value` as YAML has read it, if a parameter can have it; `text` is for the error. Raises LaunchError."""
     if isinstance(value, list):
@@ -224,36 +208,12 @@ def checked(value: Any, text: object) -> Any:
     return value
 
 
-def coerced(text: str, expected: Any) -> Any:
-    """Return `text` as a value of the type `expected`, None for what YAML reads.
-
-    Raises:
-        LaunchError: for a text that is not of this type.
-        LaunchArgumentError: for another type than bool, int, float, str or a list of one.
-    """
-    if expected is None:
-        return as_node_reads(value_in(text))
-    inner = item_type(expected)
-    if inner is not None:
-        value = value_in(text)
-        if not isinstance(value, list) or not all(isinstance(each, inner) for each in value):
-            advice = ": write 1.0 for 1" if inner is float else ""
-            raise LaunchError(f"expected a list of {inner.__name__}, got '{shown(text)}'{advice}")
-        return value
+def coerced(text: str, expected: type[bool | int | float]) -> bool | int | float:
+    """Return `text` as a value of the type `expected`. Raises LaunchError for a text that is not of it."""
     try:
-        if expected is bool:
-            return truth_of(text)
-        return {str: str, int: int, float: float}[expected](text)
-    except KeyError:
-        raise LaunchArgumentError(f"value_type is str, int, float, bool or a list of one, got {expected}") from None
+        return truth_of(text) if expected is bool else expected(text)
     except ValueError:
         raise LaunchError(f"expected {expected.__name__}, got '{shown(text)}'") from None
-
-
-def item_type(expected: Any) -> Any:
-    """Return the type of the items of a list type `expected`, `List[int]`; None for a scalar type."""
-    arguments = typing.get_args(expected)
-    return arguments[0] if arguments and typing.get_origin(expected) in (list, Sequence) else None
 
 
 def truth_of(text: str) -> bool:
