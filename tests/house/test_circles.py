@@ -11,10 +11,6 @@ STANDARD = {"message", "interfaces"}
 LONGEST = 3
 """Most files of a circle that type imports make."""
 
-KNOWN = "robolink.launch.ros."
-"""Room whose one circle is to go: an action reads itself from XML and YAML by the table in `launch_frontend`, which
-names the actions. It shall get its row by registration, as substitutions do."""
-
 Graph = dict[str, set[str]]
 
 
@@ -47,25 +43,19 @@ def is_standard(circle: frozenset[str]) -> bool:
     return {each.split(".")[1] for each in circle} <= STANDARD
 
 
-def is_known(circle: frozenset[str]) -> bool:
-    return all(each.startswith(KNOWN) for each in circle)
-
-
 def test_circles_are_found() -> None:
     graph = {"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": {"e"}, "e": set[str](), "f": {"g"}, "g": {"f", "a"}}
     assert circles(graph) == {frozenset("abc"), frozenset("fg")}
 
 
 def test_no_files_import_each_other_when_they_run() -> None:
-    assert [
-        sorted(each) for each in circles(imports(of_types=False)) if not is_standard(each) and not is_known(each)
-    ] == []
+    assert [sorted(each) for each in circles(imports(of_types=False)) if not is_standard(each)] == []
 
 
 def test_types_make_no_circle_of_more_than_three_files() -> None:
     found = circles(imports(of_types=True))
     longer = [each for each in found if len(each) > LONGEST and not is_standard(each)]
-    assert [sorted(each) for each in longer if not is_known(each)] == []
+    assert [sorted(each) for each in longer] == []
 
 
 def test_imports_for_types_are_told_apart() -> None:

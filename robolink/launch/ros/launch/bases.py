@@ -11,6 +11,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robolink.exceptions import RobolinkError, nearest
+from robolink.launch.ros.launch.registry import registered
 
 if TYPE_CHECKING:
     import asyncio
@@ -157,9 +158,7 @@ class Action(LaunchDescriptionEntity):
             parser: Parser of its texts, and of the elements in it.
             ignore: Attributes that are not read here.
         """
-        from robolink.launch.ros.launch_frontend.build import arguments
-
-        return cls, arguments(cls, entity, parser, ignore)
+        return cls, registered("arguments")(cls, entity, parser, ignore)
 
     @property
     def condition(self) -> Condition | None:

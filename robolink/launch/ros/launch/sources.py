@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,6 +20,7 @@ from robolink.launch.ros.launch.bases import (
     Place,
     SomeSubstitutionsType,
 )
+from robolink.launch.ros.launch.registry import registered
 from robolink.launch.ros.launch.settings import DeclareLaunchArgument, SetLaunchConfiguration
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, performed
 from robolink.system.terminal import shown
@@ -189,10 +189,10 @@ MAKER = "generate_launch_description"
 """Name of the function in a Python launch file."""
 
 _FRONTENDS = {
-    **dict.fromkeys((".xml", ".launch"), "robolink.launch.ros.launch_xml.parser"),
-    **dict.fromkeys((".yaml", ".yml"), "robolink.launch.ros.launch_yaml.parser"),
+    **dict.fromkeys((".xml", ".launch"), "parser of xml"),
+    **dict.fromkeys((".yaml", ".yml"), "parser of yaml"),
 }
-"""Modules of the parsers, by the ends of file names: they are imported late, since they need this file."""
+"""Names of the parsers in the registry, by the ends of file names: they need this file."""
 
 
 class InvalidLaunchFileError(LaunchError):
@@ -355,10 +355,8 @@ def get_launch_description_from_frontend_launch_file(
 def _parser_of(path: Path) -> Any:
     """Return the parser of files with such a name; other packages may have some, which takes a while to find out."""
     if path.suffix in _FRONTENDS:
-        return importlib.import_module(_FRONTENDS[path.suffix]).Parser
-    from robolink.launch.ros.launch.frontend.parser import Parser
-
-    for each in Parser.get_parsers_from_filename(path.name):
+        return registered(_FRONTENDS[path.suffix])
+    for each in registered("parser").get_parsers_from_filename(path.name):
         return each
     raise InvalidLaunchFileError(reason=f"{path} is not a launch file: expected .py, {', '.join(_FRONTENDS)}")
 

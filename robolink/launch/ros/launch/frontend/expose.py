@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from robolink.exceptions import nearest
 from robolink.launch.ros.launch.bases import Action, LaunchError, Substitution
 from robolink.launch.ros.launch.frontend.entity import Entity, placing
+from robolink.launch.ros.launch.registry import registered
 from robolink.system.terminal import shown
 
 __all__ = [
@@ -42,10 +43,8 @@ def add_own() -> None:
     """Add robolink's own actions and substitutions, once: their modules are imported late."""
     if "node" in action_parse_methods:
         return
-    from robolink.launch.ros.launch_frontend import build, texts
-
-    action_parse_methods.update({name: _checked(method) for name, method in build.methods().items()})
-    substitution_parse_methods.update(texts.methods())
+    action_parse_methods.update({name: _checked(method) for name, method in registered("actions")().items()})
+    substitution_parse_methods.update(registered("substitutions")())
 
 
 def expose_action(name: str) -> Callable[[T], T]:
@@ -140,11 +139,9 @@ def instantiate_substitution(type_name: str, args: Iterable[Any] | None = None) 
     Raises:
         LaunchError: for an unknown name, and for arguments that it does not take.
     """
-    from robolink.launch.ros.launch.frontend.parser import Parser
-
     add_own()
     if type_name not in substitution_parse_methods:
-        Parser.load_launch_extensions()
+        registered("parser").load_launch_extensions()
     if type_name not in substitution_parse_methods:
         if type_name in OF_ROS_1:
             raise LaunchError(f"$({type_name} ...) is ROS 1: $({OF_ROS_1[type_name]} ...) is what ROS 2 has")

@@ -18,6 +18,7 @@ from robolink.launch.ros.launch.frontend.parse_substitution import (
     parse_substitution,
     unescaped,
 )
+from robolink.launch.ros.launch.registry import registered
 from robolink.launch.ros.launch.sources import InvalidLaunchFileError, LaunchDescription
 from robolink.system.terminal import shown
 from robolink.workspace import VARIABLE
@@ -65,11 +66,9 @@ class Parser:
     def load_parser_implementations(cls) -> None:
         """Import the parsers, once: of XML and YAML, and the entry points `launch.frontend.parser`."""
         if Parser.frontend_parsers is None:
-            from robolink.launch.ros import launch_xml, launch_yaml
-
             others = {each.name: _loaded(each, "parser") for each in importlib_metadata.entry_points(group=PARSERS)}
             found = {name: each for name, each in others.items() if each is not None}
-            own = {"xml": launch_xml.Parser, "yaml": launch_yaml.Parser}
+            own = {"xml": registered("parser of xml"), "yaml": registered("parser of yaml")}
             Parser.frontend_parsers = dict(sorted({**found, **own}.items()))
 
     def parse_action(self, entity: Entity) -> Action:
