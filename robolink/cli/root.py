@@ -32,7 +32,6 @@ OF_ROS2 = {
 }
 """Commands of ros2 that robolink lacks, each with what to do instead."""
 VERBS_OF_ROS2 = {
-    ("action", "echo"): "'robolink topic echo ACTION/_action/feedback' shows the feedback",
     ("bag", "burst"): "'robolink bag play --rate 1000' plays as fast as it can",
     ("doctor", "hello"): "'robolink doctor' looks whom the nodes meet here, 'robolink network' shows them",
     ("security", "create_key"): "it is 'robolink security create_enclave'",

@@ -1,4 +1,4 @@
-"""robolink action: see which actions there are, and send goals."""
+"""robolink action: see which actions there are, send goals, and see those of others."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from robolink.context import Context
 
-app = typer.Typer(no_args_is_help=True, help="List actions, and send goals.")
+app = typer.Typer(no_args_is_help=True, help="List actions, send goals, print feedback and results.")
 
 
 def action_names(incomplete: str) -> list[str]:
@@ -53,7 +53,7 @@ Count = Annotated[bool, typer.Option("--count-actions", "-c", help="Print only t
 
 @app.callback()
 def _noun() -> None:
-    """List actions, and send goals."""
+    """List actions, send goals, print feedback and results."""
 
 
 @app.command("list")
@@ -153,6 +153,54 @@ def send_goal(
         ctx.fail(f"--timeout: expected a number of seconds above 0, got {timeout:g}")
     mode = verbs.Mode(feedback, timeout, as_json, node_name)
     return verbs.run(action, type_, read_stdin("goal") if from_stdin else values or "", mode)
+
+
+@app.command("echo")
+def echo_messages(
+    ctx: typer.Context,
+    action: Action,
+    type_: Annotated[
+        str,
+        typer.Argument(
+            help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=type_of_action
+        ),
+    ] = "",
+    interfaces: Annotated[
+        str | None,
+        typer.Option(
+            "--interfaces",
+            "-i",
+            metavar="A|B",
+            help="Print only these, separated by |: GOAL_SERVICE, CANCEL_SERVICE, RESULT_SERVICE, FEEDBACK_TOPIC,"
+            " STATUS_TOPIC.",
+        ),
+    ] = None,
+    csv: Annotated[
+        bool, typer.Option("--csv", help="Print the fields of a message in one line, separated by commas.")
+    ] = False,
+    full_length: Annotated[
+        bool, typer.Option("--full-length", "-f", help="Print arrays and strings at full length.")
+    ] = False,
+    length: Annotated[
+        int,
+        typer.Option(
+            "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
+        ),
+    ] = 128,
+    no_arr: Annotated[bool, typer.Option("--no-arr", help="Print only type and length of arrays.")] = False,
+    no_str: Annotated[bool, typer.Option("--no-str", help="Print only the length of strings.")] = False,
+    flow: Annotated[bool, typer.Option("--flow-style", help="Print YAML in flow style, on one line.")] = False,
+) -> None:
+    """Print feedback and status of an action, and goals, cancellations and results if introspection is enabled."""
+    from robolink.cli.action.echo import INTERFACES, Format, echo
+    from robolink.cli.shared.messages import Style
+
+    chosen = INTERFACES if interfaces is None else [each.strip().upper() for each in interfaces.split("|")]
+    for each in chosen:
+        if each not in INTERFACES:
+            ctx.fail(f"--interfaces: expected {', '.join(INTERFACES)}, got '{each}'")
+    style = Style(None if full_length else length, not no_arr, not no_str, flow)
+    echo(action, type_, list(dict.fromkeys(chosen)), Format(style, csv))
 
 
 def _types(context: Context) -> dict[str, list[str]]:

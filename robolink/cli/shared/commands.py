@@ -47,7 +47,7 @@ NOUNS = {
     "service": Entry("robolink.cli.service", "List services, call them, print requests and responses."),
     "param": Entry("robolink.cli.param", "List, get, set, dump and load parameters of nodes."),
     "lifecycle": Entry("robolink.cli.lifecycle", "Show the states of lifecycle nodes, and trigger transitions."),
-    "action": Entry("robolink.cli.action", "List actions, and send goals."),
+    "action": Entry("robolink.cli.action", "List actions, send goals, print feedback and results."),
     "learn-check": Entry("robolink.cli.learn.serving", ""),
     "bag": Entry("robolink.cli.bag", "Record, play, inspect, convert and repair bags."),
     "tf": Entry("robolink.cli.tf", "Show transforms between frames, and the tree of frames."),
