@@ -50,7 +50,7 @@ class Name(NamedTuple):
 
     @property
     def is_inner(self) -> bool:
-        """Whether it is below a class or function."""
+        """True if it is below a class or function."""
         return bool(self.argument) or "." in self.path
 
     def parents(self) -> Iterator[Name]:
@@ -186,7 +186,7 @@ def lines(names: Iterable[Name]) -> Iterator[str]:
 
 
 def compared(checkout: Path, since: Path | None = None, package: str = "") -> dict[str, list[Name]]:
-    """Return what each package of a checkout has and robolink lacks.
+    """Return the names that each package of a checkout has and robolink lacks.
 
     Args:
         checkout: The checkout.
