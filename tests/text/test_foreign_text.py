@@ -138,6 +138,7 @@ TRIED: dict[str, list[Tried]] = {
     "action type": refused("action type /lab/whisper"),
     "action find": refused("action find test_foreign_text/action/Whisper"),
     "action info": refused("action info /lab/whisper -t", "action info /lab/whisper --json"),
+    "action echo": [Tried(["action", "echo", EVIL]), Tried(["action", "echo", "/lab/whisper", "--interfaces", EVIL])],
     "action send_goal": [
         Tried(
             ["action", "send_goal", "/lab/whisper", Whisper.__ros_type__, yaml.dump({"text": EVIL}), "-f", *json_flag]

@@ -195,12 +195,12 @@ def echo_messages(
     from robolink.cli.action.echo import INTERFACES, Format, echo
     from robolink.cli.shared.messages import Style
 
-    chosen = INTERFACES if interfaces is None else [each.strip().upper() for each in interfaces.split("|")]
+    chosen = INTERFACES if interfaces is None else [each.strip() for each in interfaces.split("|")]
     for each in chosen:
-        if each not in INTERFACES:
+        if each.upper() not in INTERFACES:
             ctx.fail(f"--interfaces: expected {', '.join(INTERFACES)}, got '{each}'")
     style = Style(None if full_length else length, not no_arr, not no_str, flow)
-    echo(action, type_, list(dict.fromkeys(chosen)), Format(style, csv))
+    echo(action, type_, list(dict.fromkeys(map(str.upper, chosen))), Format(style, csv))
 
 
 def _types(context: Context) -> dict[str, list[str]]:

@@ -124,6 +124,7 @@ def test_both_say_the_same(package: Path, text: str, name: str) -> None:
 def test_a_node_without_a_package_is_a_program_by_its_path(package: Path, text: str, name: str) -> None:
     (started,) = load(package, text.format(sys.executable), name).entries
     assert started.name == "n"
+    assert started.source
     assert started.source.path
     assert started.source.path.samefile(sys.executable)
 
