@@ -106,22 +106,21 @@ def test_handlers_are_pythons_with_a_format_for_each_logger(capsys: pytest.Captu
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGUSR1")
 def test_signals_are_handled_on_the_loop_while_the_block_runs() -> None:
-    assert sys.platform != "win32"
+    usr1 = signal.Signals["SIGUSR1"]
 
-    async def main() -> list[int]:
-        seen: list[int] = []
+    async def main() -> int:
+        seen: asyncio.Queue[int] = asyncio.Queue()
         manager = AsyncSafeSignalManager(asyncio.get_running_loop())
-        manager.handle(signal.SIGUSR1, seen.append)
+        manager.handle(usr1, seen.put_nowait)
         with manager:
-            os.kill(os.getpid(), signal.SIGUSR1)
-            await asyncio.sleep(0.01)
-            assert manager.handle(signal.SIGUSR1, None) == seen.append
-            assert signal.getsignal(signal.SIGUSR1) is before
-        return seen
+            os.kill(os.getpid(), usr1)
+            number = await asyncio.wait_for(seen.get(), 10.0)
+            assert manager.handle(usr1, None) == seen.put_nowait
+            assert signal.getsignal(usr1) is signal.SIG_IGN
+        return number
 
-    before = signal.signal(signal.SIGUSR1, signal.SIG_IGN)
+    signal.signal(usr1, signal.SIG_IGN)
     try:
-        before = signal.SIG_IGN
-        assert asyncio.run(main()) == [signal.SIGUSR1]
+        assert asyncio.run(main()) == usr1
     finally:
-        signal.signal(signal.SIGUSR1, signal.SIG_DFL)
+        signal.signal(usr1, signal.SIG_DFL)
