@@ -21,6 +21,7 @@ REASONS = {
     "needs Docker",
     "measures for minutes",
     "needs ROS 2",
+    "needs a package of a workspace",
     "needs aiohttp",
     "needs a robot",
     "needs a world of Webots",

@@ -182,8 +182,9 @@ def main(args=None):
         executor = MultiThreadedExecutor(num_threads=2)
         for node in nodes:
             executor.add_node(node)
-        nodes[1].create_timer(0.01, lambda: rclpy.shutdown() if nodes[0].heard else None,
-                              callback_group=ReentrantCallbackGroup())
+        nodes[1].create_timer(0.01, lambda: None, callback_group=ReentrantCallbackGroup())
+        # in the talker's own group, so that it does not publish meanwhile
+        nodes[0].create_timer(0.01, lambda: rclpy.shutdown() if nodes[0].heard else None)
         try:
             executor.spin()
         finally:

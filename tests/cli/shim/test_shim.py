@@ -212,8 +212,9 @@ def generate_test_description():
     return launch.LaunchDescription(actions), {"process": process}
 
 class TestIt(unittest.TestCase):
-    def test_speed(self, proc_output, process):
+    def test_speed(self, proc_info, proc_output, process):
         proc_output.assertWaitFor("2", process, stream="stdout")
+        proc_info.assertWaitForShutdown(process)
 
 @launch_testing.post_shutdown_test()
 class TestAfterwards(unittest.TestCase):
