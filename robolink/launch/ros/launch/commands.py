@@ -5,12 +5,11 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import shutil
-import subprocess
 import sys
 import threading
 from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import (
     LaunchContext,
@@ -20,10 +19,12 @@ from robolink.launch.ros.launch.bases import (
     described,
 )
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-from robolink.system import waits
 from robolink.system.files import decoded, read_plain
 from robolink.system.processes import split_words
 from robolink.system.terminal import shown
+
+if TYPE_CHECKING:
+    import subprocess
 
 
 class ExpressionNameError(SubstitutionFailure, NameError):
@@ -52,6 +53,8 @@ class Command(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Run the command; return its output. Raises SubstitutionFailure if it fails."""
+        import subprocess  # few launch files run a command, and all import this module
+
         text = perform_substitutions(context, self.command)
         reaction = perform_substitutions(context, self.on_stderr)
         if reaction not in _REACTIONS:
@@ -88,6 +91,10 @@ def _run_bounded(words: list[str], errors: int, environment: Mapping[str, str]) 
         ValueError: if it cannot be run, or writes too much.
         subprocess.TimeoutExpired: if it takes too long.
     """
+    import subprocess
+
+    from robolink.system import waits
+
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, env=environment) as process:
         stored: dict[str, bytes] = {}
 

@@ -6,7 +6,6 @@ All of `logging` and `logging.handlers` are there by their names: `handlers.File
 from __future__ import annotations
 
 import logging
-import logging.handlers
 from typing import Any
 
 _made: dict[str, type[logging.Handler]] = {}
@@ -45,6 +44,8 @@ def __getattr__(name: str) -> Any:
     """Return a handler of Python's logging by its name."""
     if name.startswith("_"):
         raise AttributeError(name)
+    import logging.handlers  # it imports pickle and sockets, for handlers that few name
+
     found = getattr(logging.handlers, name, None) or getattr(logging, name, None)
     if not isinstance(found, type) or not issubclass(found, logging.Handler):
         raise AttributeError(f"Python's logging has no handler '{name}'")

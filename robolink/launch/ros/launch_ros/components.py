@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import Action, LaunchArgumentError, LaunchContext, SomeSubstitutionsType
-from robolink.launch.ros.launch.logging import get_logger
 from robolink.launch.ros.launch.utilities import performed
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
 from robolink.launch.ros.launch_ros.node import Node, note_name
@@ -98,6 +97,8 @@ LOOK_AGAIN = 0.2
 
 def _load(context: LaunchContext, client: Client, container: str, requests: Sequence[LoadNode.Request]) -> None:
     """Load components into a container, as long as the launch goes on."""
+    from robolink.launch.ros.launch.logging import get_logger  # its handlers take long to import
+
     logger = get_logger("launch_ros.actions.load_composable_nodes")
     for request in requests:
         while not client.wait_for_service(timeout_sec=LOOK_AGAIN):
