@@ -98,19 +98,25 @@ class View:
         self._ready = threading.Event()
         self._error: BaseException | None = None
         self._end = asyncio.Event()
+        self._is_closed = False
         self._connections: weakref.WeakSet[ServerConnection] = weakref.WeakSet()
         self._thread = threading.Thread(target=self._run, name="robolink view", daemon=True)
 
     def start(self) -> View:
         """Start, and return once clients can connect. Raises ViewError if it cannot listen."""
         self._thread.start()
-        waits.wait(self._ready, STARTED_WITHIN)
+        try:
+            waits.wait(self._ready, STARTED_WITHIN)
+        except BaseException:  # Ctrl-C: nobody else could close it
+            self.close()
+            raise
         if self._error is not None:
             raise self._error
         return self
 
     def close(self) -> None:
         """Stop what clients drive, and end. Safe to call twice."""
+        self._is_closed = True  # before the look at the loop, which looks at it in turn once it is there
         loop = self._loop
         if loop is not None and self._thread.is_alive():
             with contextlib.suppress(RuntimeError):
@@ -157,19 +163,29 @@ class View:
 
     async def _main(self) -> None:
         self._loop = asyncio.get_running_loop()
+        if self._is_closed:
+            return
         server = await self._listen()
-        self._access = self._access._replace(port=next(iter(server.sockets)).getsockname()[1])
-        self._source.begin(self.hub)
-        self.hub.begin()
-        ticking = asyncio.create_task(self.hub.run())
-        self._ready.set()
         try:
-            await self._end.wait()
+            self._access = self._access._replace(port=next(iter(server.sockets)).getsockname()[1])
+            await self._show()
         finally:
-            self.hub.close()
-            ticking.cancel()
-            self._source.close()
             await self._close(server)
+
+    async def _show(self) -> None:
+        """Let clients see the source until the end."""
+        try:
+            self._source.begin(self.hub)
+            self.hub.begin()
+            ticking = asyncio.create_task(self.hub.run())
+            self._ready.set()
+            try:
+                await self._end.wait()
+            finally:
+                self.hub.close()
+                ticking.cancel()
+        finally:
+            self._source.close()
 
     async def _listen(self) -> Server:
         ports = [self._port] if self._port is not None else range(PORT, PORT + MOST_PORTS)
