@@ -136,7 +136,7 @@ export class Layout {
     for (const column of model.columns) {
       for (const cell of column.cells) {
         cell.tabs = cell.tabs.map((tab) => {
-          const options = JSON.stringify(tab.options), isPlain = tab.given === undefined || options === tab.given;
+          const options = JSON.stringify(tab.options), isPlain = options === (tab.given ?? "{}");
           const at = left.findIndex((each) => each.id === tab.id && each.given === tab.given && (isPlain || options === JSON.stringify(each.options)));
           return at < 0 ? tab : left.splice(at, 1)[0];
         });
@@ -144,7 +144,7 @@ export class Layout {
     }
     for (const tab of left) this._close(tab);
     document.body.dataset.kind = kindOnly(key);
-    if (!this.main.children.length || shape(model) !== shape(this.model)) { // else what one is in the middle of goes on
+    if (!this.main.children.length || JSON.stringify(model) !== JSON.stringify(this.model)) { // else what one is in the middle of goes on
       this.model = model;
       this._build();
     }
@@ -342,9 +342,6 @@ export class Layout {
 }
 
 function kindOnly(key) { return key.replace("phone.", ""); }
-
-/** Text of all of a layout but its panels' options. */
-function shape(model) { return JSON.stringify(model, (key, value) => (key === "options" ? undefined : value)); }
 
 /** Name of a phone's page: that of its first panel, or "drive". */
 function pageName({ cells }) {

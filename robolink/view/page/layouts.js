@@ -79,7 +79,7 @@ export function restored(kept) {
       width: Number(width) || 50,
       cells: cells.map(({ height, current, tabs }) => ({
         height: Number(height) || 50, current: Number(current) || 0,
-        tabs: tabs.filter(({ id }) => PANELS.includes(id)).map((tab) => ({ options: {}, ...tab })),
+        tabs: tabs.filter(({ id }) => PANELS.includes(id)).map(({ id, options = {}, given }) => ({ id, options, given })),
       })).filter(({ tabs }) => tabs.length),
     }));
     return { columns: columns.filter(({ cells }) => cells.length) };

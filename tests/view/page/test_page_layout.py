@@ -124,6 +124,19 @@ def test_what_a_panel_shows_is_remembered_though_the_layout_follows(browser: Bro
         assert browser.js(PANELS) == DRIVE
 
 
+def test_a_panel_that_one_added_to_two_kinds_shows_in_each_what_was_chosen_there(browser: Browser) -> None:
+    def layout(**options: Any) -> dict[str, Any]:
+        return {"changed": True, "columns": [{"cells": [{"tabs": [{"id": "world", "options": options}]}]}]}
+
+    with opened(browser, layouts={"topics": layout(), "drive": layout(off=["/scan"])}) as page:
+        kind(page, "topics")
+        assert browser.js("robolink.layout.panel('world').scene.shows('/scan')") is True
+        driving(page)
+        assert browser.js("robolink.layout.panel('world').scene.shows('/scan')") is False
+        kept = browser.js("JSON.parse(localStorage['robolink.layouts']).drive.columns[0].cells[0].tabs[0].options.off")
+        assert kept == ["/scan"]
+
+
 def test_an_address_opens_its_panels(browser: Browser) -> None:
     with opened(browser) as page:
         browser.open(f"{page.view.address}#log+images:/camera/image")
