@@ -180,23 +180,19 @@ class DdsTransport(Transport):
         hold ports on this machine than it has met, it waits for LATE: on a busy one they take their time.
         """
         self._check()
-        while not self._knows_all():
-            time.sleep(0.005)
+        self._wait_for_all(self._begin + FIRST)
         if clocks.monotonic() - self._begin < LATE and (here := self._count_here() - 1) > 0:
             while len(self._participant.peers()) < here and clocks.monotonic() - self._begin < LATE:
                 time.sleep(0.005)
-            while not self._knows_all():
-                time.sleep(0.005)
+            self._wait_for_all(clocks.monotonic())  # who comes late has as much time to tell as the first ones
         return self._tokens.matching(pattern)
 
-    def _knows_all(self) -> bool:
-        now = clocks.monotonic()
-        age = now - self._begin
-        if age < FIRST:
-            return False
-        if self._is_settled():
-            return True
-        return age > LONGEST or now - max(self._worker.latest, self._begin + FIRST) > PATIENCE
+    def _wait_for_all(self, since: float) -> None:
+        """Wait until all has been read that is known to be there; from `since` on it may be that nothing more comes."""
+        while (now := clocks.monotonic()) < self._begin + LONGEST:
+            if now >= since and (self._is_settled() or now - max(self._worker.latest, since) > PATIENCE):
+                return
+            time.sleep(0.005)
 
     def _is_settled(self) -> bool:
         """Return whether all has been read, and has come through the worker."""

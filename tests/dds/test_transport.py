@@ -247,23 +247,49 @@ def test_a_new_session_waits_for_who_is_on_this_machine_and_slow(
     fake: FakeNetwork, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(dds_transport, "LATE", 30.0)
+    monkeypatch.setattr(dds_transport, "PATIENCE", 30.0)  # a thread that has no processor is not frozen
     opens: Any = fake.open
-    session = DdsTransport(opens, count_here=lambda: 2)
-    slow: list[Other] = []
+    threads: list[threading.Timer] = []
 
     def begin() -> None:
-        slow.append(Other(fake))
-        slow[0].tell("slow", slow[0].publisher())
+        slow = Other(fake)
+        slow.tell("slow", slow.publisher())
 
-    timer = threading.Timer(0.2, begin)
-    timer.start()
+    def count() -> int:
+        threads.append(threading.Timer(0.05, begin))
+        threads[0].start()
+        return 2
+
+    session = DdsTransport(opens, count_here=count)
     assert kinds(session) == ["MP slow"]
-    timer.join()
+    threads[0].join()
     monkeypatch.setattr(dds_transport, "LATE", 0.1)
     impatient = DdsTransport(opens, count_here=lambda: 9)
     assert kinds(impatient) == ["MP slow"]
     for each in (session, impatient):
         each.close()
+
+
+def test_who_comes_late_has_as_much_time_to_tell_as_the_first_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, seconds in (("FIRST", 0.0), ("PATIENCE", 10.0), ("LATE", 60.0), ("LONGEST", 60.0)):
+        monkeypatch.setattr(dds_transport, name, seconds)
+    fake = FakeNetwork(threaded=False)
+    opens: Any = fake.open
+    telling = threading.Timer(0.05, fake.deliver)
+
+    def count() -> int:
+        late = Other(fake)
+        late.tell("late", late.publisher())
+        telling.start()
+        return 2
+
+    session = DdsTransport(opens, count_here=count)
+    assert session._worker.catch_up(30.0)
+    session._begin -= 15.0  # a while ago, and nothing has happened since
+    session._worker.latest -= 15.0
+    assert kinds(session) == ["MP late"]
+    telling.join()
+    session.close()
 
 
 def test_a_frozen_participant_does_not_hold_up_a_listing_for_long(
