@@ -24,7 +24,7 @@ from tests.judge.programs import OURS, copied_to, names, record, recording
 from tests.judge.table import Row, rows
 from tests.judge.transcript import transcript
 from tests.judge.wheels import NoWheelsError, interpreter
-from tests.support.domains import free_domain
+from tests.support.domains import free_dds_domain
 
 RUNS = 2
 """How many times the real one runs a program."""
@@ -107,7 +107,7 @@ def _judge(real: list[str], chosen: argparse.Namespace) -> int:
 def _outcome(name: str, real: list[str], runs: int, folder: Path) -> Outcome:
     """Run a program by both, one after the other: each has the machine as much for itself as it can be."""
     program = copied_to(folder) / f"{name}.py"
-    with free_domain() as domain:
+    with free_dds_domain() as domain:
         return Outcome(
             name, [transcript(program, real, domain) for _ in range(runs)], transcript(program, OURS, domain)
         )

@@ -7,13 +7,20 @@ import random
 import socket
 from collections.abc import Iterator
 
+from robolink.constants import LAST_DOMAIN
 from robolink.networks.request import FIRST_PORT
-from robolink.transport.port_sharing import free_domain
+from robolink.transport import port_sharing
 
-__all__ = ["free_dds_domain", "free_domain"]
+_DOMAINS = range(102, LAST_DOMAIN + 1)
+"""Those that nobody takes by hand while tests run: ROS 2 advises against them, since DDS has ports of others there."""
 
 _DDS_DOMAINS = range(60, 80)
 """Those above 101 have ports that the system gives to others, too."""
+
+
+def free_domain() -> contextlib.AbstractContextManager[int]:
+    """Reserve a domain on which nobody is while a `with` lasts; not for DDS."""
+    return port_sharing.free_domain(_DOMAINS)
 
 
 @contextlib.contextmanager

@@ -21,9 +21,9 @@ from contextlib import ExitStack
 from functools import partial
 from typing import Any, NamedTuple
 
-from robolink.transport.port_sharing import free_domain
 from robolink.transport.shared_memory import MOST_POOLS, VARIABLE, decide, this_machine
 from tests.support.commands import PATIENCE
+from tests.support.domains import free_domain
 from tests.support.obedient import ROOT, line, start, tell
 from tests.support.ports import free_port
 

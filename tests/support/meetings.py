@@ -20,8 +20,8 @@ import time
 from contextlib import ExitStack
 
 import robolink
-from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
+from tests.support.domains import free_domain
 from tests.support.machines import THERE, Machines
 from tests.support.obedient import line, start
 from tests.support.pulse import say

@@ -25,8 +25,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from robolink.security.keystore import Keystore
-from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
+from tests.support.domains import free_domain
 from tests.support.obedient import line, start, tell
 
 SETTLES = 8.0

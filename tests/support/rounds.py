@@ -27,8 +27,8 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from robolink.qos import HistoryPolicy
-from robolink.transport.port_sharing import free_domain
 from tests.support import stalls
+from tests.support.domains import free_domain
 from tests.support.obedient import line, start, tell
 from tests.support.rounds_end import TOPICS
 

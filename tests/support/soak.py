@@ -26,7 +26,8 @@ import psutil
 
 from robolink.networks.request import FIRST_PORT
 from robolink.supervisor.reporting.logs import MOST_RUNS
-from robolink.transport.port_sharing import free_domain, is_free
+from robolink.transport.port_sharing import is_free
+from tests.support.domains import free_domain
 
 NODES = 5
 PATIENCE = 30.0

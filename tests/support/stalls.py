@@ -22,7 +22,7 @@ from contextlib import ExitStack
 from functools import partial
 from typing import Any, NamedTuple
 
-from robolink.transport.port_sharing import free_domain
+from tests.support.domains import free_domain
 from tests.support.obedient import line, start, tell
 
 PATIENCE = 60.0

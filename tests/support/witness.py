@@ -60,10 +60,11 @@ class Watched:
         since = self.samples[-1].time
         return self.wait(lambda each: each.time >= since + seconds)
 
-    def is_alone(self) -> bool:
+    def wait_until_alone(self) -> None:
         """Wait until there is no other node on the domain."""
         graph = self.context.graph
-        return graph.wait_for(lambda: {each.node_name for each in graph.nodes()} == {"witness"}, PATIENCE)
+        alone = graph.wait_for(lambda: {each.node_name for each in graph.nodes()} == {"witness"}, PATIENCE)
+        assert alone, f"these are there: {graph.nodes()}"
 
     def close(self) -> None:
         self.context.shutdown()

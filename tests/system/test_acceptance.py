@@ -72,7 +72,7 @@ def ran_well(run: LongRun) -> list[Sample]:
     assert (code, run.launch.errors) == (0, []), report
     assert run.launch.left() == []
     with watched(run.domain) as witness:
-        assert witness.is_alone()
+        witness.wait_until_alone()
     for said in (r"robot at \(\S+, \S+\) heading", r"driving|turning|following"):
         assert [line for line in report if re.search(said, line)]
     assert not [line for line in report if "ran into" in line or "in contact" in line]

@@ -16,9 +16,9 @@ from robolink.interfaces.std_msgs.msg import Int32
 from robolink.testing import ExpectationError, NodeFailure, System
 from robolink.testing.expectations import OnlyInMemoryError
 from robolink.testing.recorder import Recorder, Topic
-from robolink.transport.port_sharing import free_domain
 from tests.support.commands import MARK
 from tests.support.counting import Doubler
+from tests.support.domains import free_domain
 from tests.support.nodefiles import load_node_file
 
 pytest_plugins = ["pytester"]

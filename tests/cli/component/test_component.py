@@ -16,8 +16,8 @@ from robolink.cli.main import main
 from robolink.interfaces.composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
 from robolink.parameter import Parameter
 from robolink.testing import System
-from robolink.transport.port_sharing import free_domain
 from robolink.workspace import VARIABLE
+from tests.support.domains import free_domain
 from tests.support.ros_tree import write_package
 from tests.support.seen_by_commands import a_node_that_commands_see, spinning
 

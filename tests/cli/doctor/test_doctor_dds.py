@@ -12,7 +12,7 @@ from robolink.cli.doctor.dds_checks import dds
 from robolink.cli.doctor.facts import OK, WARNING, Facts, Seen, Settings
 from robolink.extensions.optional import PARTICIPANT, part
 from robolink.wire import BridgeToken, Mark, mark_data, mark_in
-from tests.support.domains import free_domain
+from tests.support.domains import free_dds_domain
 
 DOMAIN = 50
 FIRST = 7400 + 250 * DOMAIN
@@ -163,7 +163,7 @@ def test_a_bridge_is_marked_in_its_participants_user_data() -> None:
 @pytest.mark.processes
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="what is bound is read from /proc")
 def test_a_participant_meets_those_of_ros_2_and_bridges() -> None:
-    with free_domain() as domain:
+    with free_dds_domain() as domain:
         _meet_on(domain)
 
 
