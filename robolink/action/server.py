@@ -390,7 +390,7 @@ class ActionServer(Waitable):
             self._logger.error(f"{self._named(handle)}: an exception in its execute callback\n{formatted(error)}")
             self._end(handle, self._action_type.Result())
         except BaseException:  # asyncio cancels it: the client is not to wait for ever
-            self._end(handle, self._action_type.Result())
+            self._end(handle, self._action_type.Result(), "its callback was cancelled")
             raise
         else:
             self._end(handle, self._checked(handle, result))
@@ -407,10 +407,12 @@ class ActionServer(Waitable):
             return expected()
         return result
 
-    def _end(self, handle: ServerGoalHandle, result: Message) -> None:
+    def _end(
+        self, handle: ServerGoalHandle, result: Message, reason: str = "its callback did not say how it ended"
+    ) -> None:
         with self._lock:
             if handle.is_active:
-                self._logger.warning(f"{self._named(handle)}: aborted, since its callback did not say how it ended")
+                self._logger.warning(f"{self._named(handle)}: aborted, since {reason}")
                 handle.abort()
         self._set_result(handle, result)
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from robolink.client import BaseClient
 from robolink.experimental.loop_entity import leave
+from robolink.experimental.loops import call_at
 from robolink.message import Message
 from robolink.task import Future
 
@@ -45,7 +46,7 @@ class AsyncClient(BaseClient):
                 waiting.set_result(future.result())
 
         def on_answer() -> None:
-            complete() if threading.get_ident() == thread else loop.call_soon_threadsafe(complete)
+            complete() if threading.get_ident() == thread and not loop.is_closed() else call_at(loop, complete)
 
         future.when_done(on_answer)
         check = None if self.executor is not None else loop.call_later(GRACE, self._check_is_run, waiting)
@@ -91,5 +92,5 @@ class AsyncClient(BaseClient):
             return
         super().destroy()
         for waiting in list(self._pending.values()):
-            waiting.get_loop().call_soon_threadsafe(waiting.cancel)
+            call_at(waiting.get_loop(), waiting.cancel)
         leave(self, "clients")

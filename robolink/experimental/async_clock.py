@@ -8,6 +8,7 @@ from robolink.clock import ClockChange, JumpThreshold, ROSClock, TimeJump
 from robolink.clock_type import ClockType
 from robolink.duration import Duration
 from robolink.exceptions import TimeSourceChangedError
+from robolink.experimental.loops import call_at
 from robolink.running.timebase import TimeBase
 
 SMALLEST_JUMP = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True)
@@ -72,10 +73,9 @@ class AsyncClock(ROSClock):
         changed = jump.clock_change in (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
         now = self.now_ns()
         for sleeper, until in list(self._sleepers.items()):
-            if changed:
-                _at_its_loop(sleeper, TimeSourceChangedError("the clock's source changed during a sleep"))
-            elif until is not None and now >= until:
-                _at_its_loop(sleeper, None)
+            error = TimeSourceChangedError("the clock's source changed during a sleep") if changed else None
+            if error is not None or (until is not None and now >= until):
+                call_at(sleeper.get_loop(), _end, sleeper, error)
 
     def destroy(self) -> None:
         """Cancel all sleeps, and allow no more; the node does so at its end. Safe to call twice."""
@@ -84,7 +84,7 @@ class AsyncClock(ROSClock):
         self._is_destroyed = True
         self._jump_handle.unregister()
         for sleeper in list(self._sleepers):
-            sleeper.get_loop().call_soon_threadsafe(sleeper.cancel)
+            call_at(sleeper.get_loop(), sleeper.cancel)
 
 
 class _Alarm:
@@ -103,11 +103,6 @@ class _Alarm:
             self._set()
         else:
             _end(self._sleeper, None)
-
-
-def _at_its_loop(sleeper: asyncio.Future[None], error: Exception | None) -> None:
-    """End a sleep from any thread: time may be set where the node's /clock is not taken."""
-    sleeper.get_loop().call_soon_threadsafe(_end, sleeper, error)
 
 
 def _end(sleeper: asyncio.Future[None], error: Exception | None) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 from collections.abc import Callable, Coroutine, Generator
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
@@ -18,6 +17,7 @@ from robolink.experimental.async_service import AsyncService
 from robolink.experimental.async_subscription import AsyncSubscription
 from robolink.experimental.async_timer import AsyncTimer
 from robolink.experimental.groups import TaskGroup
+from robolink.experimental.loops import call_at
 from robolink.experimental.pump import Pump
 from robolink.node import BaseNode
 from robolink.node_parts.making import make_client, make_publisher, make_service, make_subscription
@@ -148,8 +148,7 @@ class AsyncNode(BaseNode):
         """End the running at Ctrl-C or SIGTERM in another thread than the main one, which alone hears of them."""
         pump = self._pump_
         if pump is not None and self._context.interrupted and not self._is_in_main_thread_:
-            with contextlib.suppress(RuntimeError):  # the loop is closed
-                pump.loop.call_soon_threadsafe(self._interrupt_)
+            call_at(pump.loop, self._interrupt_)
 
     def _interrupt_(self) -> None:
         if self._entered_by_ is not None and self._pump_ is not None:
@@ -170,11 +169,10 @@ class AsyncNode(BaseNode):
         pump = self._pump_
         super().destroy_node()
         self.get_clock().destroy()
-        if pump is None or pump.spins_here:
+        if pump is None or (pump.spins_here and not pump.loop.is_closed()):
             self._ended_.set()
         else:
-            with contextlib.suppress(RuntimeError):  # the loop is closed
-                pump.loop.call_soon_threadsafe(self._ended_.set)
+            call_at(pump.loop, self._ended_.set)
 
     def _wait_until_(self, holds: Callable[[], bool], timeout_sec: float | None) -> Awaited[bool]:
         return Awaited(self._look_until_(holds, timeout_sec))

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import BlockingCallError
+from robolink.experimental.loops import call_at
 from robolink.logging import get_logger
 from robolink.running.entity import NOTHING, Entity
 from robolink.running.ready_queue import ReadyQueue, earlier
@@ -129,13 +130,10 @@ class Pump:
         if self._is_roused or self._is_closed:
             return
         self._is_roused = True
-        if self.spins_here:
+        if self.spins_here and not self.loop.is_closed():
             self.loop.call_soon(self._look)
-            return
-        try:
-            self.loop.call_soon_threadsafe(self._look)
-        except RuntimeError:  # the loop was closed in the middle of everything
-            self._is_closed = True
+        else:
+            call_at(self.loop, self._look)
 
     def _look(self) -> None:
         """Begin the callbacks that are ready and that their groups let run."""
@@ -195,17 +193,17 @@ class Pump:
 
     def cancel(self, entity: Entity) -> None:
         """Cancel the callbacks of `entity` that are under way, from any thread."""
-        if self.spins_here:
+        if self.spins_here and not self.loop.is_closed():
             for task in [task for task, each in self._running.items() if each is entity]:
                 task.cancel()
         elif not self._is_closed:
-            self.loop.call_soon_threadsafe(self.cancel, entity)
+            call_at(self.loop, self.cancel, entity)
 
     def close(self) -> None:
         """Begin no callback any more, and cancel those under way; from any thread."""
         if not self.spins_here:
             if not self._is_closed:
-                self.loop.call_soon_threadsafe(self.close)
+                call_at(self.loop, self.close)
             return
         if self._is_closed:
             return
@@ -213,6 +211,8 @@ class Pump:
         if self._alarm is not None:
             self._alarm.cancel()
         self.inbox.close()
+        if self.loop.is_closed():
+            return
         for task in list(self._running):
             task.cancel()
         if self._running:
