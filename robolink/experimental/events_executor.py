@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from robolink.running.ports import SpunNode
 
 
+LINKS = 4
+"""Longest chain of callbacks, each made ready by the one before, after the end of a spin: a message, the timer whose
+time it brings, the future that this one completes, the coroutine that awaits it."""
+
+
 class AlreadySpinningError(RobolinkError, RuntimeError):
     """An EventsExecutor was to be spun by two at a time."""
 
@@ -32,6 +37,8 @@ class EventsExecutor(SingleThreadedExecutor):
     - There are no rounds: of ten messages of one topic that came before one of another, all ten go first.
     - Callback groups have no effect. While a callback that is a coroutine awaits something, all others go on, and so
       does the next call of the same one.
+    - `spin_until_future_complete` runs what is ready before it looks at its timeout: with a timeout of 0, all of it.
+      What never ends, such as a timer slower than its period, ends with the timeout too, which in rclpy it does not.
     - A spin in a callback, or in a second thread, is refused with an AlreadySpinningError (a RuntimeError).
     - Whatever spins raises ExternalShutdownException when the context has ended, also if a callback has ended it.
 
@@ -90,7 +97,8 @@ class EventsExecutor(SingleThreadedExecutor):
 
         Args:
             future: Future to wait for; `future.done()` says whether it came.
-            timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait.
+            timeout_sec: Longest wait in seconds; None or less waits for ever, 0 does not wait. What is ready then is
+                run still, however long it takes.
 
         Raises:
             ExternalShutdownException: once the context has ended, as `spin` does.
@@ -112,8 +120,20 @@ class EventsExecutor(SingleThreadedExecutor):
             )
         try:
             super()._spin(deadline, stop, once=once)
+            if deadline is not None and not once:
+                self._run_ready(deadline, stop)
         finally:
             self._spun.release()
+
+    def _run_ready(self, deadline: int, stop: Callable[[], bool] | None) -> None:
+        """Run what is ready after the deadline, and what that makes ready."""
+        for _ in range(LINKS):
+            self.inbox.sweep()
+            self._queue_.collect_due()
+            for _ in range(len(self._queue_.turns) + len(self._queue_.ready)):
+                if self._is_shutdown or not self._context.ok() or (stop is not None and stop()):
+                    return
+                super()._spin(deadline, stop, once=True)
 
 
 __all__ = ["EventsExecutor"]

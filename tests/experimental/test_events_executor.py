@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -161,6 +162,54 @@ def test_what_a_coroutine_raises_is_raised_by_the_spin(node: Node, events: Event
     node.create_timer(0.1, fail)
     with pytest.raises(ValueError, match="in the coroutine"):
         events.spin()
+
+
+def test_a_spin_of_no_time_runs_all_that_is_ready(node: Node, events: EventsExecutor) -> None:
+    log, woken = heard(node, "a"), Future[None]()
+
+    async def wait() -> None:
+        log.append("waits")
+        await woken
+        log.append("goes on")
+
+    events.create_task(wait)
+    publish(node, "a", 0, 1, 2)
+    events.create_task(lambda: woken.set_result(None))
+    spin_for(events, 0)
+    assert log == ["waits", "a0", "a1", "a2", "goes on"]
+
+
+def test_a_done_future_ends_it_though_more_is_ready(node: Node, events: EventsExecutor) -> None:
+    log, second = list[int](), Future[None]()
+    for number in range(4):
+        events.create_task(log.append, number)
+        if number == 1:
+            events.create_task(second.set_result, None)
+    events.spin_until_future_complete(second, timeout_sec=0)
+    assert log == [0, 1]
+
+
+def test_what_never_ends_ends_with_the_timeout(node: Node, events: EventsExecutor) -> None:
+    calls: list[int] = []
+
+    def again() -> None:
+        calls.append(1)
+        events.create_task(again)
+
+    again()
+    spin_for(events, 0)
+    assert 1 < len(calls) < 10
+
+
+@pytest.mark.parametrize("end", ["executor", "context"])
+def test_an_end_leaves_what_is_ready(virtual: Context, node: Node, events: EventsExecutor, end: str) -> None:
+    log: list[int] = []
+    events.create_task(log.append, 0)
+    events.create_task(events.shutdown if end == "executor" else virtual.shutdown)
+    events.create_task(log.append, 1)
+    with contextlib.suppress(ExternalShutdownException):
+        spin_for(events, 0)
+    assert log == [0]
 
 
 def test_a_callback_cannot_spin_it(node: Node, events: EventsExecutor) -> None:
