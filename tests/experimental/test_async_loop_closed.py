@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -83,9 +84,10 @@ def test_what_is_left_of_a_node_is_destroyed_without_an_error(
         elif end == "context":
             context.shutdown()
         else:
-            ends = [each.destroy for each in (*node.clients, *node.services, *node.subscriptions)]
-            for each in [*ends, *(timer.destroy for timer in node.timers), node.destroy_node]:
-                each()
+            entities: list[Any] = [*node.clients, *node.services, *node.subscriptions, *node.timers]
+            for each in entities:
+                each.destroy()
+            node.destroy_node()
 
     where(act)
     assert context.nodes == []

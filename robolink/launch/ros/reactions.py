@@ -155,9 +155,12 @@ class Reactions(Generic[T]):
         def fire() -> None:
             while (deadline := self.deadline) is not None and deadline <= now:
                 _, _, timer, around = heapq.heappop(self._timers)
-                self._visit.run_within(timer.actions, around)
-                self._visit.context.completed(timer)
-                timer.complete()
+                try:
+                    self._visit.check(timer, timer.actions)
+                    self._visit.run_within(timer.actions, around)
+                finally:  # whatever comes: a LaunchService waits for it
+                    self._visit.context.completed(timer)
+                    timer.complete()
 
         return self._following(now, fire)
 
@@ -180,7 +183,7 @@ class Reactions(Generic[T]):
         if self._roots is None:
             self._roots = roots_of(self._visit.maker.home)
         try:
-            with surroundings(self._visit.maker.home, self._roots) as absences:
+            with surroundings(self._visit.maker.home, self._roots) as absences, self._visit.placing(None):
                 absences.say = self._visit.context.said.append
                 act()
                 self._settle(now)
@@ -207,16 +210,13 @@ class Reactions(Generic[T]):
             visit.take()
         said, visit.context.said[:] = list(visit.context.said), []
         self._requests += [Tell(each, getattr(each, "severity", "INFO")) for each in said]
-        for timer, around in visit.timers:
-            with visit.placing(timer):
-                due = now + timer.seconds(visit.context)
-            heapq.heappush(self._timers, (due, next(self._numbers), timer, around))
-        visit.timers.clear()
+        while visit.timers:  # each is taken before it may fail
+            self._add_timer(*visit.timers.pop(0), now)
         started, visit.started[:] = list(visit.started), []
         for each in started:
             self._actions[each.process] = each.action
         if started and not self._is_stopping:
-            self._requests += map(Add, self._stage.plan([each.entry for each in started]))
+            self._requests += map(Add, self._planned(started))
             self._live(started)
         elif started:
             for each in started:
@@ -228,6 +228,23 @@ class Reactions(Generic[T]):
         for action in absent:
             self._go_on_without(action)
             action.complete()
+
+    def _add_timer(self, timer: TimerAction, around: dict[str, Any], now: float) -> None:
+        try:
+            with self._visit.placing(timer):
+                due = now + timer.seconds(self._visit.context)
+        except DocumentError:
+            timer.complete()
+            raise
+        heapq.heappush(self._timers, (due, next(self._numbers), timer, around))
+
+    def _planned(self, started: Sequence[Started]) -> Sequence[T]:
+        try:
+            return self._stage.plan([each.entry for each in started])
+        except Exception:
+            for each in started:  # none of them is started
+                each.action.complete()
+            raise
 
     def _go_on_without(self, action: ExecuteLocal) -> None:
         """Let what waits for a process that is left out go on, as if it had started and ended well."""
@@ -265,11 +282,17 @@ class Reactions(Generic[T]):
         """End the launch as a LaunchService does: no process is started any more, and few timers go on."""
         self._is_stopping = self._visit.context.is_shutdown = True
         for _, _, timer, around in self._timers:
-            with self._visit.placing(timer):
-                ends = self._visit.within(around, partial(is_true, self._visit.context, timer.cancel_on_shutdown))
-            if ends:
+            if self._ends_with_the_launch(timer, around):
                 timer.cancel()
         self._handle(event)
+
+    def _ends_with_the_launch(self, timer: TimerAction, around: dict[str, Any]) -> bool:
+        try:
+            with self._visit.placing(timer):
+                return self._visit.within(around, partial(is_true, self._visit.context, timer.cancel_on_shutdown))
+        except DocumentError as error:  # the others have to end all the same
+            self._requests.append(End(str(error), 1))
+            return True
 
     # Nodes with a lifecycle
 

@@ -256,7 +256,9 @@ class Runner:
             process = replace(process, env={}, base=details["env"])
         if process.base is None:
             process = replace(process, base=dict(self._context.environment))
-        rules = replace(process.rules, on_exit="ignore", patience=self._patience(action))
+        with self._visit.placing(action):
+            patience = self._patience(action)
+        rules = replace(process.rules, on_exit="ignore", patience=patience)
         terminal = _is_terminal(action, self._context)
         if action.log_cmd:
             words = " ".join(each for each in details["cmd"] if each.strip())
