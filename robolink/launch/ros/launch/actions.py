@@ -18,6 +18,7 @@ from robolink.launch.ros.launch.bases import (
 )
 from robolink.launch.ros.launch.event_handlers import OnShutdown
 from robolink.launch.ros.launch.events import Shutdown as ShutdownEvent
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.lines import Log, LogDebug, LogError, LogInfo, LogWarning
 from robolink.launch.ros.launch.processes import ExecuteLocal, ExecuteProcess
 from robolink.launch.ros.launch.settings import (
@@ -82,6 +83,7 @@ __all__ = [
 ]
 
 
+@inner_names("function", "args", "kwargs")
 class OpaqueFunction(Action):
     """Call a function of the launch file, which may return further entities.
 
@@ -162,6 +164,7 @@ class OpaqueCoroutine(Action):
         return self._future
 
 
+@inner_names(actions="_actions", scoped="_scoped", forwarding="_forwarding", launch_configurations="_configurations")
 class GroupAction(Action):
     """Several actions; what they set ends with the group.
 
@@ -320,6 +323,7 @@ def _mapping(text: str) -> dict[str, Any]:
     return found
 
 
+@inner_names("period", "actions")
 class TimerAction(Action):
     """Actions for later.
 
@@ -386,6 +390,7 @@ class TimerAction(Action):
         return [(f"after {self.period} s", self.actions)]
 
 
+@inner_names("event_handler")
 class RegisterEventHandler(Action):
     """React to events from here on.
 
@@ -424,6 +429,7 @@ class UnregisterEventHandler(Action):
         context.unregister_event_handler(self.event_handler)
 
 
+@inner_names("event")
 class EmitEvent(Action):
     """Emit an event.
 

@@ -11,6 +11,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from robolink.exceptions import RobolinkError, nearest
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.registry import registered
 
 if TYPE_CHECKING:
@@ -129,6 +130,7 @@ class Condition:
         return False if self._predicate is None else self._predicate(context)
 
 
+@inner_names(condition="_condition")
 class Action(LaunchDescriptionEntity):
     """Something to do; subclasses override `execute`.
 

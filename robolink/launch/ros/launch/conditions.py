@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 
 from robolink.launch.ros.launch.bases import Condition, LaunchContext, LaunchError, SomeSubstitutionsType
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.utilities import (
     is_true,
     normalize_to_list_of_substitutions,
@@ -38,6 +39,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: SomeSubsti
         raise InvalidConditionExpressionError(str(error)) from None
 
 
+@inner_names(predicate_expression="_expression")
 class IfCondition(Condition):
     """True if a text is true or 1; anything but true, 1, false and 0 is an error.
 
@@ -50,6 +52,7 @@ class IfCondition(Condition):
         super().__init__(predicate=lambda context: evaluate_condition_expression(context, self._expression))
 
 
+@inner_names(predicate_expression="_expression")
 class UnlessCondition(Condition):
     """True if a text is false or 0.
 

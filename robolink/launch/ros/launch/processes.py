@@ -20,6 +20,7 @@ from robolink.launch.ros.launch.bases import (
     Substitution,
     check_actions,
 )
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.substitutions import LaunchConfiguration
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 from robolink.system.processes import split_words
@@ -130,6 +131,21 @@ def _performed(pairs: Iterable[tuple[_Substitutions, _Substitutions]] | None, co
     return {perform_substitutions(context, name): perform_substitutions(context, value) for name, value in pairs or ()}
 
 
+@inner_names(
+    "process_description",
+    "shell",
+    "sigterm_timeout",
+    "sigkill_timeout",
+    "emulate_tty",
+    "output",
+    "output_format",
+    "log_cmd",
+    "cached_output",
+    "on_exit",
+    "respawn",
+    "respawn_delay",
+    "respawn_max_retries",
+)
 class ExecuteLocal(Action):
     """Start a process.
 

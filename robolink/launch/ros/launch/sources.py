@@ -20,6 +20,7 @@ from robolink.launch.ros.launch.bases import (
     Place,
     SomeSubstitutionsType,
 )
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.registry import registered
 from robolink.launch.ros.launch.settings import DeclareLaunchArgument, SetLaunchConfiguration
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, performed
@@ -225,6 +226,7 @@ class LaunchFileNotFoundError(LaunchError, FileNotFoundError):
         self.path = path
 
 
+@inner_names("method", location="_location", launch_description="_description")
 class LaunchDescriptionSource(LaunchDescriptionEntity):
     """Source of a launch description: a file, or a description as it is.
 
@@ -413,6 +415,7 @@ def load_python_launch_file_as_module(python_launch_file_path: SomePath) -> Modu
     return module
 
 
+@inner_names("launch_description_source", "launch_arguments")
 class IncludeLaunchDescription(Action):
     """Another launch file, or another description, with arguments.
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from robolink.launch.ros.launch.bases import Action, LaunchArgumentError, LaunchContext, SomeSubstitutionsType
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.utilities import performed
 from robolink.launch.ros.launch_ros.descriptions import ComposableNode
 from robolink.launch.ros.launch_ros.node import Node, note_name
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from robolink.task import Future
 
 
+@inner_names("composable_node_descriptions")
 class ComposableNodeContainer(Node):
     """Process of C++ that loads nodes as plugins.
 
@@ -50,6 +52,7 @@ class ComposableNodeContainer(Node):
         self.composable_node_descriptions = list(composable_node_descriptions or ())
 
 
+@inner_names("composable_node_descriptions", "target_container")
 class LoadComposableNodes(Action):
     """Load nodes of C++ into a container that runs.
 

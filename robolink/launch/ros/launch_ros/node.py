@@ -19,6 +19,7 @@ from robolink.launch.ros.launch.bases import (
     SomeSubstitutionsType,
     Substitution,
 )
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.substitutions import LocalSubstitution
 from robolink.launch.ros.launch.utilities import normalize_to_list_of_substitutions, performed
 from robolink.launch.ros.launch_ros.descriptions import take_old_names
@@ -53,6 +54,16 @@ class Names(NamedTuple):
     namespace: str | None
 
 
+@inner_names(
+    "node_executable",
+    "parameters",
+    "remappings",
+    "arguments",
+    "ros_arguments",
+    package="node_package",
+    node_name="requested_name",
+    node_namespace="requested_namespace",
+)
 class Node(ExecuteProcess):
     """Start a node.
 

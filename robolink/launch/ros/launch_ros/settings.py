@@ -8,6 +8,7 @@ from typing import Any
 from robolink.arguments.parameter_file import parse_parameter_value
 from robolink.exceptions import DocumentError, NameValidationException
 from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchError, SomeSubstitutionsType, Substitution
+from robolink.launch.ros.launch.inner_names import inner_names
 from robolink.launch.ros.launch.substitutions import SubstitutionFailure
 from robolink.launch.ros.launch.utilities import boolean, normalize_to_list_of_substitutions, perform_substitutions
 from robolink.launch.ros.launch_ros.parameters import evaluate_parameter_dict, normalize_parameter_dict
@@ -68,6 +69,7 @@ class SetRemap(Action):
         context.launch_configurations[REMAPS] = [*context.launch_configurations.get(REMAPS, []), pair]
 
 
+@inner_names(param_dict="_normal")
 class SetParameter(Action):
     """Set a parameter of the nodes behind this; their own parameters count more.
 
