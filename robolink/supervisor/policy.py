@@ -225,7 +225,7 @@ class Policy:
         if self.is_over:
             return None
         if self.step is not None:
-            return self._requested_at + self._patience
+            return self._requested_at + self._patience_of_all(self.step)
         due = [each.due for each in self.processes.values() if each.due is not None]
         return min(due if self.ends is None else [*due, self.ends], default=None)
 
@@ -298,7 +298,8 @@ class Policy:
         if self.deadline is None or now < self.deadline:
             return []
         if self.step is not None:
-            return [self._late(*self.alive), *self._harder(now)]
+            late = self._late(*self.alive, patience=self._patience_of_all(self.step))
+            return [late, *self._harder(now)]
         if self.ends is not None and now >= self.ends:
             self._is_requested = True
             return self._harder(now)
@@ -447,6 +448,10 @@ class Policy:
         """Return the time in seconds between this step of stopping a process, and the next."""
         own = each.rules.patience
         return self._patience if own is None or step > Step.TERMINATE else own[step]
+
+    def _patience_of_all(self, step: Step) -> float:
+        """Return the time in seconds between this step of stopping the system, and the next: the longest of all."""
+        return max((self._patience_of(self.processes[name], step) for name in self.alive), default=self._patience)
 
     def _late(self, *names: str, patience: float | None = None) -> Say:
         seconds = self._patience if patience is None else patience

@@ -25,7 +25,7 @@ from robolink.launch.ros.launch import LaunchDescription
 from robolink.launch.ros.launch.actions import RegisterEventHandler, TimerAction
 from robolink.launch.ros.launch.bases import Event, LaunchContext
 from robolink.launch.ros.launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
+from robolink.launch.ros.launch.process_events import ProcessExited, ProcessIO, ProcessStarted
 from robolink.launch.ros.launch_testing.io_handler import ActiveIoHandler
 from robolink.launch.ros.launch_testing.isolation import own_network
 from robolink.launch.ros.launch_testing.loader import LaunchTestError, bound, isolated, normalized

@@ -122,6 +122,14 @@ def test_a_module_is_imported_from_its_package(name: str) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+def test_all_names_of_the_events_of_processes_hide_no_action() -> None:
+    scope: dict[str, Any] = {}
+    exec("from launch.actions import *\nfrom launch.events.process import *", scope)
+    assert scope["Shutdown"] is importlib.import_module("launch.actions").Shutdown
+    assert scope["ProcessExited"] is importlib.import_module("launch.events.process.process_exited").ProcessExited
+
+
+@pytest.mark.usefixtures("compat")
 def test_a_function_stays_one_though_its_module_has_its_name() -> None:
     name = "launch_testing.parametrize"
     package, _, function = name.rpartition(".")

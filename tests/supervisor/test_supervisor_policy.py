@@ -311,6 +311,17 @@ def test_one_process_may_have_a_patience_of_its_own() -> None:
     assert policy.woken(14) == [Say("still running after 3 s: a", "WARN"), Ask("a", KILL)]
 
 
+def test_the_end_of_the_system_waits_as_long_as_its_processes_want() -> None:
+    policy = two(Rules(patience=(1.0, 3.0)), Rules(patience=(2.0, 0.5)))
+    policy.interrupted(10)
+    assert policy.deadline == 12.0
+    assert policy.woken(12)[0] == Say("still running after 2 s: a, b", "WARN")
+    assert policy.deadline == 15.0
+    policy.exited("a", -15, 13)
+    assert policy.deadline == 12.5
+    assert policy.woken(13) == [Say("still running after 0.5 s: b", "WARN"), Ask("b", KILL)]
+
+
 def test_a_process_that_was_interrupted_already_gets_the_next_step_in_time() -> None:
     policy = two(PLAIN)
     assert policy.stop_one("a", 1, is_interrupted=True) == [Say("stopping a")]

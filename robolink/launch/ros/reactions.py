@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.exceptions import DocumentError
 from robolink.launch.entry import Stage
-from robolink.launch.ros.launch import events
-from robolink.launch.ros.launch import events as process_events
+from robolink.launch.ros.launch import events, process_events
 from robolink.launch.ros.launch.actions import EmitEvent, ExecuteLocal, TimerAction
 from robolink.launch.ros.launch.bases import BaseEventHandler, Event, LaunchDescriptionEntity, entities_in
 from robolink.launch.ros.launch.event_handlers import OnProcessIO, OnShutdown

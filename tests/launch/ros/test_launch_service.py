@@ -36,8 +36,8 @@ from robolink.launch.ros.launch.event_handlers import (
     OnProcessStart,
     OnShutdown,
 )
-from robolink.launch.ros.launch.events import ProcessExited
 from robolink.launch.ros.launch.events import Shutdown as ShutdownEvent
+from robolink.launch.ros.launch.process_events import ProcessExited
 
 
 @pytest.fixture(autouse=True)

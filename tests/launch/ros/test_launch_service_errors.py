@@ -19,7 +19,7 @@ from robolink.launch.ros.launch.actions import (
     RegisterEventHandler,
     TimerAction,
 )
-from robolink.launch.ros.launch.bases import Event, EventHandler
+from robolink.launch.ros.launch.bases import Event, EventHandler, LaunchArgumentError
 from robolink.launch.ros.launch.event_handlers import OnShutdown
 from robolink.launch.ros.launch.substitutions import LaunchConfiguration
 
@@ -104,6 +104,14 @@ def test_an_error_ends_the_launch_with_1(kind: str, capsys: pytest.CaptureFixtur
     lines = [line for line in capsys.readouterr().out.splitlines() if "Caught exception in launch: " in line]
     assert 1 <= len(lines) <= 5
     assert __file__.rpartition("/")[2] in lines[0]
+
+
+@pytest.mark.parametrize("wrong", [3, None, Event, "end"])
+def test_what_is_not_an_event_is_refused_at_once(wrong: Any) -> None:
+    service = LaunchService()
+    with pytest.raises(LaunchArgumentError, match="an event is expected"):
+        service.emit_event(wrong)
+    assert ran(EmitEvent(event=wrong)) == [1]
 
 
 @pytest.mark.processes

@@ -13,7 +13,7 @@ import pytest
 from robolink.launch.ros import launch_testing
 from robolink.launch.ros.launch.actions import ExecuteProcess
 from robolink.launch.ros.launch.bases import LaunchArgumentError
-from robolink.launch.ros.launch.events import ProcessExited, ProcessIO, ProcessStarted
+from robolink.launch.ros.launch.process_events import ProcessExited, ProcessIO, ProcessStarted
 from robolink.launch.ros.launch_testing import ActiveIoHandler, ActiveProcInfoHandler, asserts, tools
 from robolink.launch.ros.launch_testing.util import NO_CMD_ARGS, NoMatchingProcessException, resolveProcesses
 

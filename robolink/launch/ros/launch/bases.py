@@ -520,7 +520,12 @@ class LaunchContext:
         return any(each.matches(event) for each in self.handlers)
 
     def emit_event_sync(self, event: Event) -> None:
-        """Emit `event`: it is handled once the launcher is done with the present one."""
+        """Emit `event`: it is handled once the launcher is done with the present one.
+
+        Raises LaunchArgumentError (a TypeError) for what is not an Event.
+        """
+        if not isinstance(event, Event):
+            raise LaunchArgumentError(f"an event is expected, such as Shutdown(), got {type(event).__name__}")
         self.emitted.append(event)
         self._changed()
 

@@ -16,14 +16,8 @@ from robolink.launch.ros.launch.bases import (
     check_actions,
     entities_in,
 )
-from robolink.launch.ros.launch.events import (
-    ExecutionComplete,
-    IncludeLaunchDescription,
-    ProcessExited,
-    ProcessIO,
-    ProcessStarted,
-    Shutdown,
-)
+from robolink.launch.ros.launch.events import ExecutionComplete, IncludeLaunchDescription, Shutdown
+from robolink.launch.ros.launch.process_events import ProcessExited, ProcessIO, ProcessStarted
 from robolink.launch.ros.launch.processes import ExecuteLocal
 
 __all__ = [

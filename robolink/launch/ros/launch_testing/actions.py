@@ -9,7 +9,8 @@ from typing import Any
 from robolink.launch.ros.launch.actions import EmitEvent, ExecuteProcess, RegisterEventHandler, TimerAction
 from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchDescriptionEntity, SomeSubstitutionsType
 from robolink.launch.ros.launch.event_handlers import OnProcessExit
-from robolink.launch.ros.launch.events import ShutdownProcess, matches_action
+from robolink.launch.ros.launch.events import matches_action
+from robolink.launch.ros.launch.process_events import ShutdownProcess
 
 __all__ = ["GTest", "PyTest", "ReadyToTest", "Test"]
 

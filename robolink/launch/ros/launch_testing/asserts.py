@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any, Protocol
 
 from robolink.launch.ros.launch.actions import ExecuteLocal
-from robolink.launch.ros.launch.events import ProcessIO, RunningProcessEvent
+from robolink.launch.ros.launch.process_events import ProcessIO, RunningProcessEvent
 from robolink.launch.ros.launch_testing.text import build_text_match, text_of, without_escapes
 from robolink.launch.ros.launch_testing.util import (
     NO_CMD_ARGS,

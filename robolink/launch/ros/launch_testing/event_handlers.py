@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robolink.launch.ros.launch.bases import Action, LaunchDescriptionEntity, SomeEntitiesType, entities_in
 from robolink.launch.ros.launch.event_handlers import OnProcessIO
-from robolink.launch.ros.launch.events import ProcessIO
+from robolink.launch.ros.launch.process_events import ProcessIO
 
 __all__ = ["StdoutReadyListener"]
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from robolink.launch.ros.launch.actions import ExecuteLocal
-from robolink.launch.ros.launch.events import ProcessExited, RunningProcessEvent
+from robolink.launch.ros.launch.process_events import ProcessExited, RunningProcessEvent
 from robolink.launch.ros.launch_testing.util import NoMatchingProcessException, name_of, resolveProcesses
 from robolink.system import waits
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias, TypeVar
 
-from robolink.launch.ros.launch.events import ProcessIO
+from robolink.launch.ros.launch.process_events import ProcessIO
 
 __all__ = ["build_line_match", "build_text_match", "normalize_lineseps", "text_of", "without_escapes"]
 

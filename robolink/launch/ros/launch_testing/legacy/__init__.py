@@ -9,7 +9,8 @@ from typing import Any
 from robolink.launch.ros.launch.actions import EmitEvent, ExecuteLocal, RegisterEventHandler
 from robolink.launch.ros.launch.bases import Action, LaunchContext, LaunchDescriptionEntity
 from robolink.launch.ros.launch.event_handlers import OnExecutionComplete, OnProcessExit, OnProcessIO, OnShutdown
-from robolink.launch.ros.launch.events import ExecutionComplete, ProcessExited, ProcessIO, Shutdown
+from robolink.launch.ros.launch.events import ExecutionComplete, Shutdown
+from robolink.launch.ros.launch.process_events import ProcessExited, ProcessIO
 from robolink.launch.ros.launch.sources import LaunchDescription
 from robolink.launch.ros.launch_testing import actions
 from robolink.launch.ros.launch_testing.legacy import output

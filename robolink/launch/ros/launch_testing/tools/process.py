@@ -8,14 +8,8 @@ from typing import Any
 
 from robolink.launch.ros.launch.actions import ExecuteLocal
 from robolink.launch.ros.launch.bases import LaunchArgumentError
-from robolink.launch.ros.launch.events import (
-    IncludeLaunchDescription,
-    ProcessExited,
-    ProcessIO,
-    ProcessStarted,
-    ShutdownProcess,
-    matches_action,
-)
+from robolink.launch.ros.launch.events import IncludeLaunchDescription, matches_action
+from robolink.launch.ros.launch.process_events import ProcessExited, ProcessIO, ProcessStarted, ShutdownProcess
 from robolink.launch.ros.launch.sources import LaunchDescription
 from robolink.launch.ros.launch_testing.io_handler import ActiveIoHandler
 from robolink.launch.ros.launch_testing.proc_info_handler import ActiveProcInfoHandler
