@@ -89,7 +89,7 @@ class Peer:
         return number
 
     def answer(self, number: int, seconds: float = PATIENCE) -> Any:
-        self._wait(lambda: number in self._answers, seconds, f"an answer to request {number}")
+        self._wait(lambda: number in self._answers, seconds, lambda: f"an answer to request {number}")
         said = self._answers.pop(number)
         assert "error" not in said, f"{self.name}: {said['error']}: {self.errors[-20:]}"
         return said["value"]
@@ -109,15 +109,18 @@ class Peer:
         def found() -> list[dict[str, Any]]:
             return [each for each in self.events(event) if fields.items() <= each.items()]
 
-        self._wait(lambda: len(found()) >= count, seconds, f"{count} of '{event}' {fields or ''}, but {len(found())}")
+        def what() -> str:
+            return f"{count} of '{event}' {fields or ''}, but {len(found())}, the last of them {found()[-1:]}"
+
+        self._wait(lambda: len(found()) >= count, seconds, what)
         return found()
 
-    def _wait(self, condition: Callable[[], bool], seconds: float, what: str) -> None:
+    def _wait(self, condition: Callable[[], bool], seconds: float, what: Callable[[], str]) -> None:
         end = time.monotonic() + seconds
         while not condition():
             left = end - time.monotonic()
             assert self._process.poll() is None, f"{self.name} has ended: {self.errors[-20:]}"
-            assert left > 0, f"{self.name} has not given, in {seconds:g} s, {what}; it says {self.errors[-20:]}"
+            assert left > 0, f"{self.name} has not given, in {seconds:g} s, {what()}; it says {self.errors[-20:]}"
             with self._changed:
                 self._changed.wait(min(left, 0.05))
 

@@ -43,7 +43,8 @@ BEST_EFFORT = [
 def ways(scene: Scene, case: Case, prefix: str) -> list[tuple[Peer, Peer, str]]:
     """Give each peer a publisher that the other subscribes to; return sender, receiver and topic of each."""
     found = []
-    qos: dict[str, Any] = {"type_name": case.type_name, "reliable": case.reliable}
+    depth = max(10, case.messages)  # on a busy machine all wait at once, and of more than that the oldest are dropped
+    qos: dict[str, Any] = {"type_name": case.type_name, "reliable": case.reliable, "depth": depth}
     for sender, receiver in ((scene.real, scene.ours), (scene.ours, scene.real)):
         topic = f"{prefix}_{case.name}_of_{sender.name}"
         sender.ask("publisher", topic=topic, **qos)
