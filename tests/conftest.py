@@ -62,6 +62,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """
     for name in [each for each in os.environ if each.startswith(("ROS_", "RCUTILS_", "ROBOLINK_"))]:
         del os.environ[name]
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # hundreds of processes would each compile what they import
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = tempfile.TemporaryDirectory(prefix="robolink-logs-", ignore_cleanup_errors=True)
