@@ -202,11 +202,15 @@ class LaunchTestModule(pytest.Module):
             if mark.name not in OWN_MARKS:
                 self.own_markers.append(mark)
                 self.keywords[mark.name] = mark
+        for name in _test_functions(self.obj):
+            instead = "a launch test has its tests in classes of unittest.TestCase"
+            self.warn(pytest.PytestCollectionWarning(f"{name}() is not run: {instead}, as in ROS 2"))
+        classes = sorted(_test_classes(self.obj), key=_is_after_shutdown) or [TestLaunch]
         for one, parameters in launches(describe):
             run = LaunchTest(one, self.path, parameters, launch_arguments(self.config))
             self._runs.append(run)
             ending = f"[{'-'.join(map(str, parameters.values()))}]" if parameters else ""
-            for cls in sorted(_test_classes(self.obj), key=_is_after_shutdown):
+            for cls in classes:
                 yield LaunchTestClass.from_parent(self, name=cls.__name__ + ending, tests=isolated(cls), run=run)
 
     def only(self, run: LaunchTest) -> None:
@@ -233,6 +237,19 @@ def _test_classes(module: Any) -> Iterator[type[unittest.TestCase]]:
         is_test = isinstance(each, type) and issubclass(each, unittest.TestCase)
         if is_test and each.__module__.partition(".")[0] != "unittest":
             yield each
+
+
+def _test_functions(module: Any) -> Iterator[str]:
+    for name, each in vars(module).items():
+        if name.startswith("test") and inspect.isfunction(each) and each.__module__ == module.__name__:
+            yield name
+
+
+class TestLaunch(unittest.TestCase):
+    """Tests of a file without a class of tests, as ROS 2 counts it: its processes get ready, which its setup tests."""
+
+    def test_processes_get_ready(self) -> None:
+        """Do nothing beside the processes."""
 
 
 def _is_after_shutdown(cls: type) -> bool:

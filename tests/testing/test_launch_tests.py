@@ -225,3 +225,30 @@ def test_mistakes_of_the_description_are_told_for_each_test(pytester: pytest.Pyt
     result = run(pytester)
     result.assert_outcomes(errors=len(MISTAKES), passed=1)
     result.stdout.fnmatch_lines([f"*{each}*" for each in MISTAKES.values()])
+
+
+@pytest.mark.processes
+def test_a_launch_without_test_methods_is_one_test(pytester: pytest.Pytester) -> None:
+    text = """
+    import sys
+    import launch, launch_testing, launch_testing.actions, pytest
+
+    @pytest.mark.launch_test
+    def generate_test_description():
+        process = launch.actions.ExecuteProcess(cmd=[sys.executable, "-c", "print('here', flush=True)"])
+        ready = launch_testing.event_handlers.StdoutReadyListener(
+            target_action=process, ready_txt="SAID", actions=[launch_testing.actions.ReadyToTest()])
+        return launch.LaunchDescription([process, launch.actions.RegisterEventHandler(ready)])
+
+    def test_start(proc_info, proc_output):
+        assert False
+    """
+    pytester.makepyfile(test_it=text.replace("SAID", "here"), test_never=text.replace("SAID", "nothing"))
+    result = run(pytester)
+    result.assert_outcomes(passed=1, errors=1, warnings=2)
+    result.stdout.fnmatch_lines(
+        [
+            "test_it.py::TestLaunch::test_processes_get_ready PASSED*",
+            "*test_start() is not run: a launch test has its tests in classes of unittest.TestCase*",
+        ]
+    )
