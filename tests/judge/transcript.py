@@ -32,6 +32,8 @@ _MASKS = [
     (r"\[ERROR\] \[[\d.]+\] \[rcl\]: Failed to parse global arguments\n", ""),
     (r"\[WARN\] \[[\d.]+\] \[rcl\]: (?:Namespace|Node name) not remapped .*\n", ""),
     (r"\[WARN\] \[[\d.]+\] \[rcl_lifecycle\]: No transition matching .*\n", ""),
+    # What an EventsExecutor logs beside the exception that it raises: the frames, as of a traceback.
+    (r"(\[WARN\] .*: Error occurred at:\n)(?:  .*\n)*\n?", r"\1"),
     # Where a warning points to: the caller, or a line of the library.
     (r"(?m)^\S+?:\d+: (\w+Warning): .*\n(?:(?:\t- |Use the Single).*\n)*(?:  .*\n)?", r"<\1>\n"),
     (r"robolink\.spinning\.", "rclpy."),
