@@ -15,7 +15,7 @@ from robolink.cli.shared.session import node_of, opened
 from robolink.cli.topic.options import QoSFlags
 from robolink.documents.yamlfile import parse
 from robolink.event_handler import PublisherEventCallbacks
-from robolink.exceptions import DocumentError, RobolinkError, nearest
+from robolink.exceptions import DocumentError, EncodeError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.message import decode, encode, from_builtins
 from robolink.system import clocks
@@ -131,7 +131,7 @@ def run(topic: str, type_name: str, values: str | None, request: Request, *, fil
     if request.max_wait is not None and not wait:
         raise PublishError("--max-wait-time-secs only says something with --wait-matching-subscriptions, -1 or --times")
     if values is not None:
-        documents = [parse(values, name="<values>")]
+        documents = [("", parse(values, name="<values>"))]
     elif file:
         documents = list(documents_of(read_messages(file), file))
     else:
@@ -140,7 +140,7 @@ def run(topic: str, type_name: str, values: str | None, request: Request, *, fil
         node = node_of(context, request.node_name, describes=True)
         name = node.resolve_topic_name(topic)
         msg_type = _type_of(context, name, type_name)
-        messages = [Stamped(msg_type, each) for each in documents]
+        messages = [_stamped(msg_type, each, place) for place, each in documents]
         if request.sim_time:
             _follow_clock(node)
         # The event does nothing but end a turn of the executor: somebody has come.
@@ -177,13 +177,24 @@ def _text(raw: bytes, name: str) -> str:
         raise DocumentError("not UTF-8 text", name, line) from None
 
 
-def documents_of(text: str, source: str = INPUT) -> Iterator[Any]:
-    """Yield each document of a YAML stream that is not empty. Raises DocumentError, also if there is none."""
+def documents_of(text: str, source: str = INPUT) -> Iterator[tuple[str, Any]]:
+    """Yield the place and the content of each document of a YAML stream that is not empty; DocumentError for none."""
     parts = [each for each in _RULE.split(text) if each.strip()]
     if not parts:
         raise DocumentError("there is nothing to publish in it", source)
     for number, each in enumerate(parts, start=1):
-        yield parse(each.removeprefix("\n"), name=source if len(parts) == 1 else f"{source}, document {number}")
+        place = source if len(parts) == 1 else f"{source}, document {number}"
+        yield place, parse(each.removeprefix("\n"), name=place)
+
+
+def _stamped(msg_type: type[Any], data: Any, place: str) -> Stamped:
+    """Return a message. Raises DocumentError with its place, EncodeError if it has none."""
+    try:
+        return Stamped(msg_type, data)
+    except EncodeError as error:
+        if not place:
+            raise
+        raise DocumentError(str(error), place) from None
 
 
 def _type_of(context: Context, name: str, given: str) -> type[Any]:

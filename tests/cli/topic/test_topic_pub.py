@@ -132,6 +132,8 @@ def test_messages_of_a_file_are_published_in_turn(node: Node, tmp_path: Path) ->
         (b"", "there is nothing to publish in it"),
         (b"data: 1\ndata: \xff\n", "not UTF-8 text"),
         (b"data: 1\n---\ndata: {\n", "document 2"),
+        (b"data: 1\n---\nnumber: 2\n", "counts.yaml, document 2: Int32: no field 'number'"),
+        (b"- 1\n", "counts.yaml: Int32: expected a mapping of data"),
     ],
 )
 def test_a_file_that_cannot_be_published_is_told(
