@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import queue
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import (
@@ -33,6 +33,9 @@ from robolink.wire import NO_HASH, EndpointKind, unpack_attachment
 if TYPE_CHECKING:
     from robolink.running.ports import Loop
 
+SrvType = TypeVar("SrvType")  # names that programs import from here
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 _RELEASED = object()
 _UNREADABLE = (DecodeError, WireError, TransportError)

@@ -72,6 +72,8 @@ if TYPE_CHECKING:
 
 MsgType = TypeVar("MsgType")  # names that programs import from here
 SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 _number = itertools.count(1).__next__
 

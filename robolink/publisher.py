@@ -29,6 +29,7 @@ from robolink.transport.history import Latch, latched_depth
 from robolink.wire import NO_HASH, EndpointKind
 
 MsgT = TypeVar("MsgT", bound=Message)
+MsgType = TypeVar("MsgType")  # a name that programs import from here
 _FOR_EVER = Duration(seconds=-1)
 
 

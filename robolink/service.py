@@ -6,7 +6,7 @@ import contextlib
 import functools
 import inspect
 from collections.abc import Callable, Coroutine
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import DecodeError, OverwrittenError, WireError
@@ -21,6 +21,10 @@ from robolink.service_introspection import ServiceIntrospectionState as ServiceI
 from robolink.text.callbacks import named
 from robolink.transport.base import Query
 from robolink.wire import EndpointKind, pack_attachment, unpack_attachment
+
+SrvType = TypeVar("SrvType")  # names that programs import from here
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 MOST_WAITING = 1000
 """Most requests that wait for the executor: QoS's depth of 10 is for topics. Beyond it the oldest ends unanswered."""

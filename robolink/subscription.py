@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from robolink.subscription_content_filter_options import ContentFilterOptions
 
 MsgT = TypeVar("MsgT", bound=Message)
+MsgType = TypeVar("MsgType")  # a name that programs import from here
 
 _LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
 

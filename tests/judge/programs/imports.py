@@ -15,7 +15,7 @@ def names(m, ns):
 
 names(
     "rclpy.node",
-    "Node ParameterDescriptor Parameter SetParametersResult NodeNameNonExistentError QoSProfile Publisher Subscription Client Service Timer Rate Clock ROSClock Executor CallbackGroup HIDDEN_NODE_PREFIX MsgType SrvType",
+    "Node ParameterDescriptor Parameter SetParametersResult NodeNameNonExistentError QoSProfile Publisher Subscription Client Service Timer Rate Clock ROSClock Executor CallbackGroup HIDDEN_NODE_PREFIX MsgType SrvType SrvTypeRequest SrvTypeResponse",
 )
 names(
     "rclpy.parameter",
@@ -54,7 +54,10 @@ names(
     "rclpy.lifecycle",
     "Node LifecycleNode Publisher LifecyclePublisher State LifecycleState TransitionCallbackReturn ManagedEntity SimpleManagedEntity NodeMixin LifecycleNodeMixin",
 )
-names("rclpy.subscription", "Subscription MessageInfo CallbackType")
+names("rclpy.subscription", "Subscription MessageInfo CallbackType MsgType")
+names("rclpy.publisher", "Publisher MsgType")
+names("rclpy.client", "Client SrvType SrvTypeRequest SrvTypeResponse")
+names("rclpy.service", "Service SrvType SrvTypeRequest SrvTypeResponse")
 names(
     "rclpy.event_handler",
     "QoSPublisherMatchedInfo QoSMessageLostInfo QoSOfferedIncompatibleQoSInfo IncompatibleTypeInfo EventHandler UnsupportedEventTypeError",
