@@ -15,7 +15,7 @@ from robolink.cli.shared.session import node_of, opened
 from robolink.cli.topic.options import QoSFlags
 from robolink.documents.yamlfile import parse
 from robolink.event_handler import PublisherEventCallbacks
-from robolink.exceptions import DocumentError, EncodeError, RobolinkError, nearest
+from robolink.exceptions import DocumentError, MessageError, RobolinkError, nearest
 from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.message import decode, encode, from_builtins
 from robolink.system import clocks
@@ -188,10 +188,10 @@ def documents_of(text: str, source: str = INPUT) -> Iterator[tuple[str, Any]]:
 
 
 def _stamped(msg_type: type[Any], data: Any, place: str) -> Stamped:
-    """Return a message. Raises DocumentError with its place, EncodeError if it has none."""
+    """Return a message. Raises DocumentError with its place, MessageError if it has none."""
     try:
         return Stamped(msg_type, data)
-    except EncodeError as error:
+    except MessageError as error:
         if not place:
             raise
         raise DocumentError(str(error), place) from None

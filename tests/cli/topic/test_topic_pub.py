@@ -165,9 +165,9 @@ def test_what_echo_shows_can_be_published_again(node: Node, monkeypatch: pytest.
         (b"\n---\n---\n", "<standard input>: there is nothing to publish in it"),
         (b"data: hi\n\xff\xfe\x00", "<standard input>:2: not UTF-8 text"),
         (b"data: \x00\x01", "<standard input>:1:7: character U+0000 is not allowed in YAML"),
-        (b"data: a\n---\ndate: 2", "String: no field 'date' (did you mean 'data'?)"),
+        (b"data: a\n---\ndate: 2", "<standard input>, document 2: String: no field 'date' (did you mean 'data'?)"),
         (b"data: a\n---\ndata: [", "<standard input>, document 2:1:8: "),
-        (b"3", "String: expected a mapping of data, got 3"),
+        (b"3", "<standard input>: String: expected a mapping of data, got 3"),
         (
             b"a: &a [x,x,x,x,x,x,x,x,x]\n"
             + b"".join(
