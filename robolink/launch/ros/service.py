@@ -68,6 +68,7 @@ class Runner:
         self._to_restart: dict[str, None] = {}
         """Names of the processes that have ended and are to be started again."""
         self._code = 0
+        self._is_abandoned = False
 
     async def run(self, *, shutdown_when_idle: bool) -> int:
         """Run until all has ended, and return the exit code; `shutdown_when_idle` ends it when nothing is left."""
@@ -82,8 +83,14 @@ class Runner:
             except asyncio.CancelledError:
                 self._logger.error("run task was canceled")
                 self._code = 1
+            except GeneratorExit:  # its loop went away in the middle of it: nothing can be awaited
+                self._is_abandoned = True
+                raise
             finally:
-                await self._end()
+                if not self._is_abandoned:
+                    await self._end()
+                elif self._supervision is not None:
+                    self._supervision.stop()
         return self._code
 
     @contextmanager
@@ -145,7 +152,8 @@ class Runner:
             try:
                 await asyncio.wait([*left, woken], return_when=asyncio.FIRST_COMPLETED)
             finally:
-                woken.cancel()
+                if not self._loop.is_closed():
+                    woken.cancel()
 
     def _left(self) -> list[asyncio.Future[Any]]:
         """Return the futures for which it waits; one that failed ends the launch."""
@@ -406,13 +414,17 @@ class _Supervision:
         """Carry out requests on the supervisor's thread."""
         self._supervisor.direct(lambda now: requests)
 
+    def stop(self) -> None:
+        """Ask what still runs to stop; returns at once."""
+        if not self._supervisor.is_end_requested:
+            self._supervisor.stop()
+
     async def end(self) -> None:
         """Wait for the end of what still runs, after it was asked to stop; a cancellation of the wait asks harder."""
         self.deadline = None
         self.request([])
         while not self._ended.done():
-            if not self._supervisor.is_end_requested:
-                self._supervisor.stop()
+            self.stop()
             try:
                 await asyncio.shield(self._ended)
             except asyncio.CancelledError:
@@ -424,10 +436,16 @@ class _Supervision:
             self._supervisor.run()
         except RobolinkError as error:
             text = str(error)
-            self._loop.call_soon_threadsafe(lambda: self._runner.take([Tell(text)]))
+            self._hand_on(lambda: self._runner.take([Tell(text)]))
         finally:
             self._output.close()
-            self._loop.call_soon_threadsafe(self._ended.set_result, None)
+            self._hand_on(self._ended.set_result, None)
+
+    def _hand_on(self, callback: Callable[..., object], *args: Any) -> None:
+        try:
+            self._loop.call_soon_threadsafe(callback, *args)
+        except RuntimeError:  # the loop was closed in the middle of everything: nobody leads the processes any more
+            self.stop()
 
     # What it hears as a director, on the supervisor's thread
 
@@ -437,12 +455,12 @@ class _Supervision:
 
     def started(self, name: str, pid: int, now: float) -> Sequence[Request[Process]]:
         """Hand on that a process runs."""
-        self._loop.call_soon_threadsafe(self._runner.started, name, pid)
+        self._hand_on(self._runner.started, name, pid)
         return ()
 
     def exited(self, name: str, returncode: int, now: float) -> Sequence[Request[Process]]:
         """Hand on that a process has ended."""
-        self._loop.call_soon_threadsafe(self._exited, name, returncode)
+        self._hand_on(self._exited, name, returncode)
         return ()
 
     def _exited(self, name: str, returncode: int) -> None:
@@ -455,7 +473,7 @@ class _Supervision:
 
     def line(self, name: str, line: bytes, now: float, fd: int | None = None) -> Sequence[Request[Process]]:
         """Hand on what a process writes."""
-        self._loop.call_soon_threadsafe(self._runner.wrote, name, line, fd or 1)
+        self._hand_on(self._runner.wrote, name, line, fd or 1)
         return ()
 
     def stopping(self, now: float) -> Sequence[Request[Process]]:

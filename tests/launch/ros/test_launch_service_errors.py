@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
+import gc
+import os
+import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
@@ -120,3 +124,31 @@ def test_an_error_stops_the_processes(kind: str) -> None:
     running = process()
     assert ran(running, *ERRORS[kind]()) == [1]
     assert running.return_code != 0
+
+
+@pytest.mark.processes
+@pytest.mark.filterwarnings("ignore:coroutine .* was never awaited")
+def test_a_loop_that_is_closed_under_it_takes_the_processes_along(monkeypatch: pytest.MonkeyPatch) -> None:
+    errors: list[Any] = []
+    monkeypatch.setattr(threading, "excepthook", errors.append)
+    monkeypatch.setattr(sys, "unraisablehook", errors.append)
+    running = process()
+    service = LaunchService()
+    service.include_launch_description(LaunchDescription([running, process()]))
+    loop = asyncio.new_event_loop()
+    task = loop.create_task(service.run_async())
+
+    async def until_it_runs() -> None:
+        while running.process_details is None or running.process_details.get("pid", 0) == 0:
+            await asyncio.sleep(0.01)
+
+    loop.run_until_complete(asyncio.wait_for(until_it_runs(), PATIENCE))
+    assert running.process_details is not None
+    (thread,) = [each for each in threading.enumerate() if each.name == "launch-supervisor"]
+    loop.close()
+    os.kill(running.process_details["pid"], signal.SIGTERM)
+    thread.join(PATIENCE)
+    assert not thread.is_alive()
+    del task, service
+    gc.collect()
+    assert errors == []
