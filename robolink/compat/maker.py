@@ -159,6 +159,7 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     """Put robolink's module in the place of the new one; a name that it lacks is answered with advice."""
     module: Any = importlib.import_module(room)
     sys.modules[fullname] = module
+    _put_inner(fullname, module)
     package, _, kind = fullname.partition(".")
     holds_types = room.startswith(f"{TYPES}.") and kind in KINDS
     inner = [name for name in ROOMS if name.startswith(f"{fullname}.")]
@@ -174,6 +175,18 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     own = vars(module).get("__getattr__")
     if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
         module.__getattr__ = functools.partial(_lacked, fullname, module, own)
+
+
+def _put_inner(fullname: str, module: ModuleType) -> None:
+    """Put the modules that `module` holds in the place of their names: programs write `launch.actions.log_info`.
+
+    They were imported by the name that they have at robolink, so that no finder was asked for the name of ROS 2's.
+    """
+    start = f"{fullname}."
+    for last in {name.removeprefix(start).partition(".")[0]: None for name in ROOMS if name.startswith(start)}:
+        held = vars(module).get(last)
+        if isinstance(held, ModuleType) and start + last not in sys.modules and held.__name__ == room_of(start + last):
+            _put(start + last, held.__name__, held)
 
 
 def _home(module: str, short: str) -> str:
@@ -203,7 +216,7 @@ def _inner(module: ModuleType, name: str) -> str:
     if name.startswith("__"):
         return ""
     names = [f"{each}.{name}" for each, found in sys.modules.copy().items() if found is module]
-    return next((each for each in names if each in ROOMS or _types_in(each)), "")
+    return next((each for each in names if each in ROOMS or _types_in(each) or _is_there(room_of(each))), "")
 
 
 def _home_of(fullname: str, name: str) -> str:

@@ -122,6 +122,29 @@ def test_a_module_is_imported_from_its_package(name: str) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(
+            "launch.frontend.entity.Entity",
+            "launch.actions.execute_process.ExecuteProcess",
+            "launch.logging.get_logger",
+        ),
+        *("launch.substitutions.text_substitution.TextSubstitution", "launch.launch_context.LaunchContext"),
+        *("launch.events.process.process_exited.ProcessExited", "launch_ros.actions.node.Node"),
+        *("launch_ros.substitutions.executable_in_package.ExecutableInPackage", "launch_ros.utilities.add_node_name"),
+        *("launch_testing.asserts.assert_exit_codes.assertExitCodes", "launch_testing.util.proc_lookup"),
+    ],
+)
+def test_the_import_of_a_package_of_launch_brings_its_modules(name: str) -> None:
+    found = importlib.import_module(name.partition(".")[0])
+    for part in name.split(".")[1:]:
+        found = getattr(found, part)
+    module, _, last = name.rpartition(".")
+    assert found is getattr(importlib.import_module(module), last)
+
+
+@pytest.mark.usefixtures("compat")
 def test_all_names_of_the_events_of_processes_hide_no_action() -> None:
     scope: dict[str, Any] = {}
     exec("from launch.actions import *\nfrom launch.events.process import *", scope)
