@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from robolink.launch.ros.launch import LaunchContext, LaunchDescription
 from robolink.launch.ros.launch.actions import (
@@ -24,7 +26,7 @@ from robolink.launch.ros.launch.sources import PythonLaunchDescriptionSource
 from robolink.launch.ros.launch.substitutions import LaunchConfiguration
 from robolink.launch.ros.launch.utilities import perform_substitutions
 from robolink.launch.ros.launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node, SetParameter
-from robolink.launch.ros.launch_ros.descriptions import ComposableNode
+from robolink.launch.ros.launch_ros.descriptions import ComposableNode, Parameter
 from robolink.launch.ros.launch_ros.utilities import evaluate_parameters
 
 CONTEXT = LaunchContext()
@@ -54,6 +56,20 @@ def test_a_node_shows_what_it_was_made_of() -> None:
     assert (action._Node__node_name, action._Node__node_namespace) == ("n", "s")
     assert (action._Node__arguments, action._Node__ros_arguments) == (["-x"], ["-y"])
     assert [(text(match), text(new)) for match, new in action._Node__remappings] == [("a", "b")]
+
+
+def test_a_node_shows_what_it_became(tmp_path: Path) -> None:
+    action = node(parameters=[{"a": 1}, str(tmp_path / "b.yaml"), Parameter("c", 3)], remappings=[("a", "b")])
+    unknown = (Node.UNSPECIFIED_NODE_NAME, Node.UNSPECIFIED_NODE_NAMESPACE)
+    assert (action._Node__expanded_node_name, action._Node__expanded_node_namespace) == unknown
+    assert (action._Node__expanded_parameter_arguments, action._Node__expanded_remappings) == (None, None)
+    action._perform_substitutions(CONTEXT)
+    assert (action._Node__expanded_node_name, action._Node__expanded_node_namespace) == ("n", "/s")
+    (written, *others) = action._Node__expanded_parameter_arguments
+    assert yaml.safe_load(Path(written[0]).read_text()) == {"/s/n": {"ros__parameters": {"a": 1}}}
+    assert (written[1], others) == (True, [(str(tmp_path / "b.yaml"), True), ("c:=3", False)])
+    assert action._Node__expanded_remappings == [("a", "b")]
+    assert list(action._Node__extensions.values()) == []
 
 
 def test_what_a_program_sets_counts() -> None:

@@ -63,6 +63,11 @@ class Names(NamedTuple):
     package="node_package",
     node_name="requested_name",
     node_namespace="requested_namespace",
+    expanded_node_name="_expanded_node_name",
+    expanded_node_namespace="expanded_node_namespace",
+    expanded_parameter_arguments="_parameter_arguments",
+    expanded_remappings="_expanded_remappings",
+    extensions="_extensions",
 )
 class Node(ExecuteProcess):
     """Start a node.
@@ -111,6 +116,10 @@ class Node(ExecuteProcess):
         """Full name under which the launcher started it: that of its program where the launch file gives it none."""
         self._names: Names | None = None
         self._expanded_remappings: list[tuple[str, str]] | None = None
+        self._parameter_arguments: list[tuple[str, bool]] | None = None
+        """Values and files of parameters, and whether each is a file, once `_perform_substitutions` was called."""
+        self._extensions: dict[str, Any] = {}
+        """Extensions of ROS 2's Node: none, robolink loads none."""
         self._command: list[list[Substitution]] | None = None
         super().__init__(cmd=[self.node_executable, *self.arguments], name=exec_name, **kwargs)
 
@@ -127,8 +136,13 @@ class Node(ExecuteProcess):
             if self.expanded_name is not None:
                 return self.expanded_name
             raise LaunchError("a node's name is known once it is executed")
-        name = self.UNSPECIFIED_NODE_NAME if self._names.name is None else self._names.name
+        name = self._expanded_node_name
         return prefix_namespace(self.expanded_node_namespace, name) or name
+
+    @property
+    def _expanded_node_name(self) -> str:
+        known = None if self._names is None else self._names.name
+        return self.UNSPECIFIED_NODE_NAME if known is None else known
 
     @property
     def expanded_node_namespace(self) -> str:
@@ -195,27 +209,35 @@ class Node(ExecuteProcess):
         if self._names.namespace is not None:
             validate_namespace(self._names.namespace)
             words += ["-r", LocalSubstitution(f"{SPECIFIC}['ns']")]
+        self._parameter_arguments = []
         for each in context.launch_configurations.get(PARAMETERS, ()):
-            pair = ["-p", f"{each[0]}:={each[1]}"]
-            words += pair if isinstance(each, tuple) else ["--params-file", str(Path(each).absolute())]
+            is_value = isinstance(each, tuple)
+            words += ["-p", f"{each[0]}:={each[1]}"] if is_value else self._noted(str(Path(each).absolute()), True)
         for each in evaluate_parameters(context, self.parameters):
-            words += self._words_of(each, context)
+            words += self._noted(*self._argument(each, context))
         for match, new in self._expanded_remappings or ():
             words += ["-r", f"{match}:={new}"]
         self.cmd.extend(_normal(words))
 
-    def _words_of(self, parameters: Any, context: LaunchContext) -> list[str]:
+    def _noted(self, text: str, is_file: bool) -> list[str]:
+        """Return the words for a parameter, or a file of them, after noting it."""
+        assert self._parameter_arguments is not None
+        self._parameter_arguments.append((text, is_file))
+        return ["--params-file" if is_file else "-p", text]
+
+    def _argument(self, parameters: Any, context: LaunchContext) -> tuple[str, bool]:
+        """Return the word of a command line for parameters, and whether it is a file."""
         if isinstance(parameters, Parameter):
             name, value = parameters.evaluate(context)
-            return ["-p", f"{name}:={spell(value)}"]
+            return f"{name}:={spell(value)}", False
         if isinstance(parameters, Path):
-            return ["--params-file", str(parameters)]
+            return str(parameters), True
         node = self.node_name if self.is_node_name_fully_specified() else "/**"
         values = {name: list(value) if isinstance(value, tuple) else value for name, value in parameters.items()}
         with tempfile.NamedTemporaryFile("w", prefix="launch_params_", encoding="utf-8", delete=False) as file:
             yaml.safe_dump({node: {"ros__parameters": values}}, file, default_flow_style=False)
         atexit.register(Path(file.name).unlink, missing_ok=True)
-        return ["--params-file", file.name]
+        return file.name, True
 
 
 def note_name(context: LaunchContext, node_name: str) -> None:
