@@ -136,6 +136,7 @@ def test_a_loop_that_is_closed_under_it_takes_the_processes_along(monkeypatch: p
     service = LaunchService()
     service.include_launch_description(LaunchDescription([running, process()]))
     loop = asyncio.new_event_loop()
+    loop.set_exception_handler(lambda *_: None)  # it tells of tasks that were left pending
     task = loop.create_task(service.run_async())
 
     async def until_it_runs() -> None:
