@@ -238,7 +238,7 @@ def period_ns(seconds: float) -> int:
     """Return a timer's period of `seconds` in nanoseconds. Raises ValueError if it is negative, infinite or NaN."""
     if float(seconds) < 0:
         raise ValueError(f"a timer's period cannot be negative, got {seconds} s")
-    if not float(seconds) < float("inf"):
+    if not float(seconds) * 1e9 < float("inf"):
         raise ValueError(f"a timer's period must be a number of seconds, got {seconds}")
     return int(float(seconds) * 1e9)
 

@@ -196,3 +196,10 @@ def test_filters_take_messages_of_the_node(context: Context) -> None:
         return pairs
 
     assert run(main()) == [(1.0, 2.0)]
+
+
+@pytest.mark.parametrize("period", [-1.0, float("nan"), float("inf"), 1e300])
+def test_a_period_that_is_not_a_time_is_refused(context: Context, period: float) -> None:
+    node = AsyncNode("node", context=context)
+    with pytest.raises(ValueError, match="a timer's period"):
+        node.create_timer(period, print)
