@@ -21,20 +21,31 @@ from tests.support.seen_by_commands import press_ctrl_c, spinning, when_said
 
 Captured = pytest.CaptureFixture[str]
 NAME = "/lab/sums"
+PARTS = {
+    "GOAL_SERVICE": "send_goal/_service_event",
+    "CANCEL_SERVICE": "cancel_goal/_service_event",
+    "RESULT_SERVICE": "get_result/_service_event",
+    "FEEDBACK_TOPIC": "feedback",
+    "STATUS_TOPIC": "status",
+}
 
 
 @pytest.fixture
-def sending(node: Node, sums: Sums) -> Iterator[None]:
-    """A goal is sent to /lab/sums, whose introspection is enabled, as soon as the command listens."""
+def sending(request: pytest.FixtureRequest, node: Node, sums: Sums) -> Iterator[None]:
+    """A goal is sent to /lab/sums, whose introspection is enabled, as soon as the command listens to all it shows."""
     server = ActionServer(node, Fibonacci, "sums", sums)
     server.configure_introspection(node.get_clock(), qos_profile_services_default, ServiceIntrospectionState.CONTENTS)
     client = ActionClient(node, Fibonacci, "sums")
-    topics = [part_name(NAME, each) for each in ("send_goal/_service_event", "feedback", "status")]
-    counts = [len(node.context.graph.endpoints(EndpointKind.SUBSCRIPTION, name=each)) for each in topics]
+    callspec = getattr(request.node, "callspec", None)
+    topics = [part_name(NAME, PARTS[each]) for each in ([callspec.params["interface"].upper()] if callspec else PARTS)]
+
+    def heard() -> list[int]:
+        return [len(node.context.graph.endpoints(EndpointKind.SUBSCRIPTION, name=each)) for each in topics]
+
+    before = heard()
 
     def is_heard() -> bool:
-        now = (len(node.context.graph.endpoints(EndpointKind.SUBSCRIPTION, name=each)) for each in topics)
-        return any(there > before for there, before in zip(now, counts, strict=True))
+        return all(there > one for there, one in zip(heard(), before, strict=True))
 
     def send() -> None:
         if node.context.graph.wait_for(is_heard, 10.0):
