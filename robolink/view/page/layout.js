@@ -137,7 +137,8 @@ export class Layout {
       for (const cell of column.cells) {
         cell.tabs = cell.tabs.map((tab) => {
           const options = JSON.stringify(tab.options), isPlain = options === (tab.given ?? "{}");
-          const at = left.findIndex((each) => each.id === tab.id && each.given === tab.given && (isPlain || options === JSON.stringify(each.options)));
+          const fits = (each) => isPlain || options === this.shown.get(each).began || options === JSON.stringify(each.options);
+          const at = left.findIndex((each) => each.id === tab.id && each.given === tab.given && fits(each));
           return at < 0 ? tab : left.splice(at, 1)[0];
         });
       }
@@ -259,7 +260,7 @@ export class Layout {
   _open(tab) {
     const title = words(`panel.${tab.id}`), body = h("div", { class: "body" }, h("p", { class: "dim" }, words("loading")));
     const element = h("section", { class: `panel panel-${tab.id}`, tabIndex: -1, role: "tabpanel", "aria-label": title, "data-panel": tab.id }, body);
-    const shown = { element, panel: null, closed: false };
+    const shown = { element, panel: null, closed: false, began: JSON.stringify(tab.options) };
     shown.loaded = import(`./panels/${tab.id}.js`).then(({ panel }) => {
       if (shown.closed) return;
       body.replaceChildren();

@@ -137,6 +137,17 @@ def test_a_panel_that_one_added_to_two_kinds_shows_in_each_what_was_chosen_there
         assert kept == ["/scan"]
 
 
+def test_a_panel_that_two_kinds_remember_alike_goes_on_as_it_is(browser: Browser) -> None:
+    tab = {"id": "world", "options": {"off": ["/scan"]}}
+    with opened(browser, layout={"columns": [{"cells": [{"tabs": [tab]}]}]}) as page:
+        kind(page, "topics")
+        browser.js("void (globalThis.before = robolink.layout.panel('world'))")
+        browser.js("before.scene.show('/map', false)")
+        driving(page)
+        assert browser.js("robolink.layout.panel('world') === before")
+        assert browser.js("robolink.layout.panel('world').scene.shows('/map')") is False
+
+
 def test_an_address_opens_its_panels(browser: Browser) -> None:
     with opened(browser) as page:
         browser.open(f"{page.view.address}#log+images:/camera/image")

@@ -156,6 +156,7 @@ def test_a_topic_is_opened_with_its_branches_unfolded(browser: Browser) -> None:
     tab = {"id": "topics", "options": {"topic": "/cmd_vel", "open": True}}
     with opened(browser, layout={"columns": [{"width": 50, "cells": [{"tabs": [tab]}]}]}) as page:
         publish(page)
+        browser.wait("robolink.layout.kind == 'drive'")
         assert tree(page, "linear.x") == ["linear", "x 0.5", "y 0", "z 0", "angular", "x 0", "y 0", "z 0"]
         assert browser.js("document.querySelector('.detail p').textContent") == "geometry_msgs/msg/Twist"
         browser.click("[data-path=angular]")
