@@ -145,8 +145,8 @@ def test_a_file_of_before_2018_is_told_what_replaces_it(package: Path) -> None:
         read_system(path, {})
 
 
-@pytest.mark.slow
-def test_what_never_ends(package: Path) -> None:
+def test_what_never_ends(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("robolink.launch.ros.visit.MOST_VISITED", 1_000)
     endless = """
     def again(context):
         return [OpaqueFunction(function=again)]
@@ -154,7 +154,7 @@ def test_what_never_ends(package: Path) -> None:
     def generate_launch_description():
         return LaunchDescription([OpaqueFunction(function=again)])
     """
-    with pytest.raises(DocumentError, match=r"bot.launch.py:\d+: it never ends: more than 100,000 actions"):
+    with pytest.raises(DocumentError, match=r"bot.launch.py:\d+: it never ends: more than 1,000 actions"):
         read(package, endless)
     with pytest.raises(DocumentError, match=r"bot.launch.py:\d+: it never ends: a function or a substitution calls"):
         read(package, endless.replace("[OpaqueFunction(function=again)]\n\n", "again(context)\n\n"))
