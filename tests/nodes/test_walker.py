@@ -185,6 +185,7 @@ def test_on_a_route_cmd_vel_does_not_count(system: System) -> None:
     assert said(system, "cmd_vel is ignored on a route") == 1
 
 
+@pytest.mark.slow
 def test_it_stands_while_stop_holds_and_walks_on_when_it_is_released(system: System) -> None:
     node = system.start(walker.Walker, parameters={"route": "0x6", "autostart": True})
     lock = system.node.create_publisher(Bool, "/e_stop", QOS)

@@ -51,8 +51,14 @@ class Page:
         self.browser.wait(f"{self.topic(name)}?.latest")
 
     def wait_for_reader(self, publisher: Publisher[Any]) -> None:
-        """Wait until the page has asked for a topic and the server has subscribed to it, so that nothing is lost."""
-        self.browser.wait(f"{self.topic(publisher.topic_name)}?.subscription")
+        """Wait until the page has asked for a topic and the server has subscribed for it: nothing is lost.
+
+        For its figures the server may have subscribed before: what it hears then goes to nobody.
+        """
+        name = publisher.topic_name
+        self.browser.wait(f"{self.topic(name)}?.subscription")
+        channels = self.system.source.channels
+        until(lambda: any(each.topic == name and each.takers for each in list(channels.values())))
         until(lambda: publisher.get_subscription_count() > 0)
 
     def panel(self, name: str) -> str:

@@ -166,6 +166,7 @@ def test_pressing_again_and_again_ends_as_it_was_said_last(system: System, tmp_p
         assert named(world)["ada"].held is (turn % 2 == 0)
 
 
+@pytest.mark.slow
 def test_a_fleet_of_a_hundred_stands(system: System, tmp_path: Path) -> None:
     robots = "".join(f"  - {{name: r{i}, pose: [{i % 10}, {i // 10}, 0]}}\n" for i in range(100))
     path = tmp_path / "fleet.yaml"
