@@ -96,7 +96,7 @@ export class Connection extends Emitter {
       case 0x02: this.emit("time", milliseconds(view, 1)); break;
       case 0x03: this._answer(view); break;
       case 0x05:
-        this.emit("playback", { status: view.getUint8(1), time: milliseconds(view, 2), speed: view.getFloat32(10, true), didSeek: view.getUint8(14) === 1 });
+        this.emit("playback", { status: view.getUint8(1), time: milliseconds(view, 2), speed: view.getFloat32(10, true), didSeek: view.getUint8(14) === 1, id: new TextDecoder().decode(new Uint8Array(view.buffer, view.byteOffset + 19)) });
         break;
       case 0x80: this._batch(view); break;
     }
@@ -196,14 +196,16 @@ export class Connection extends Emitter {
     }
   }
 
-  /** Control the playing of a bag: {play: bool, speed, seek (ms or undefined)}. */
-  playback({ play, speed = 1, seek }) {
-    const view = new DataView(new ArrayBuffer(19));
+  /** Control the playing of a bag: {play: bool, speed, seek (ms or undefined), id (a text that comes back with the answer)}. */
+  playback({ play, speed = 1, seek, id = "" }) {
+    const name = new TextEncoder().encode(id), view = new DataView(new ArrayBuffer(19 + name.length));
     view.setUint8(0, 3);
     view.setUint8(1, play ? 0 : 1);
     view.setFloat32(2, speed, true);
     view.setUint8(6, seek === undefined ? 0 : 1);
     putTime(view, 7, seek ?? 0);
+    view.setUint32(15, name.length, true);
+    new Uint8Array(view.buffer).set(name, 19);
     this._raw(view.buffer);
   }
 

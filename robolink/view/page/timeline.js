@@ -14,11 +14,15 @@ export class Timeline {
     this.app = app;
     this.bag = null; // {start, end, time, playing, speed} in milliseconds, while the server plays a bag
     this._at = 0;
+    this._requests = this._answered = 0; // numbers of the last request to the server, and of the last one that it has answered
     app.connection.on("info", (info) => this._info(info));
     app.connection.on("playback", (state) => this._state(state));
-    app.connection.on("time", (time) => { if (this.bag) this.bag.time = time; });
+    app.connection.on("time", (time) => { if (this.bag && this._isAnswered) this.bag.time = time; });
     this.build();
   }
+
+  /** False while the server's times are older than what was requested last. */
+  get _isAnswered() { return this._answered === this._requests; }
 
   /** Time of the bag, or undefined without one. */
   get bagTime() { return this.bag?.time; }
@@ -63,7 +67,7 @@ export class Timeline {
   step(seconds) {
     const [start, end] = this._span(), { bag } = this, { time } = this.app, at = bag ? bag.time : time.live ? end : time.at;
     const to = Math.max(start, Math.min(end, at + seconds * 1000));
-    if (bag) bag.time = to; // the next step may come before the server's answer
+    if (bag) bag.time = to; // the next step may come before the server's answer, and an earlier step's answer before that
     this._scrub((to - start) / (end - start));
   }
 
@@ -83,21 +87,23 @@ export class Timeline {
   }
 
   _control({ play = this.bag.playing, speed = this.bag.speed, seek }) {
-    this.app.connection.playback({ play, speed, seek });
+    this.app.connection.playback({ play, speed, seek, id: `${++this._requests}` });
   }
 
   _info(info) {
     const ms = (time) => (time ? time.sec * 1000 + time.nsec / 1e6 : 0);
     const had = Boolean(this.bag);
+    this._answered = this._requests; // a new connection answers nothing of before
     this.bag = (info.capabilities ?? []).includes("playbackControl")
       ? { start: ms(info.dataStartTime), end: ms(info.dataEndTime), time: ms(info.dataStartTime), playing: true, speed: 1 } : null;
     if (had || this.bag) this.build();
   }
 
-  _state({ status, time, speed, didSeek }) {
+  _state({ status, time, speed, didSeek, id }) {
     if (!this.bag) return;
+    if (id) this._answered = Number(id);
     if (didSeek) this.app.forget(); // what is so at the new time follows
-    Object.assign(this.bag, { time, speed, playing: status === PLAYING });
+    if (this._isAnswered) Object.assign(this.bag, { time, speed, playing: status === PLAYING });
     this.speeds.value = speed;
     this._at = 0; // shown with the next frame
   }

@@ -272,3 +272,29 @@ def test_a_bag_has_its_timeline_first_and_nothing_that_acts(browser: Browser, tm
             browser.press(key)
         assert browser.js("[robolink.layout.has('teleop'), document.querySelector('.note')]") == [False, None]
         page.picture("layout_bag")
+
+
+def test_steps_in_a_bag_add_up_before_the_answer_of_the_first_has_come(browser: Browser, tmp_path: Path) -> None:
+    write(tmp_path / "lap", ten_messages())
+    with (
+        open_bag(tmp_path / "lap") as bag,
+        View(BagSource(bag), Settings(port=0)) as view,
+        opened(browser, view=view) as page,
+    ):
+        kind(page, "bag")
+        browser.js("robolink.connection.playback({ play: false, seek: robolink.timeline.bag.start })")
+        browser.wait("(({ playing, time, start }) => !playing && time === start)(robolink.timeline.bag)")
+        went = browser.js(
+            """(({ timeline, connection }) => {
+              const { start } = timeline.bag;
+              timeline.step(2);
+              timeline.step(2);
+              connection.emit("playback", { status: 1, time: start + 2000, speed: 1, didSeek: false, id: "1" });
+              connection.emit("time", start + 2000);
+              timeline.step(-1);
+              return timeline.bag.time - start;
+            })(robolink)"""
+        )
+        assert went == 3000
+        browser.wait("robolink.timeline._isAnswered")
+        assert browser.js("robolink.timeline.bag.time - robolink.timeline.bag.start") == 3000
