@@ -92,27 +92,24 @@ def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
 
 
 _OWN = str(Path(__file__).parents[1]) + os.sep
-_STANDARD = str(Path(os.__file__).parent) + os.sep
-_IMPORTERS = ("<frozen importlib", "<frozen zipimport")
+_JYTHON = ("org", "java")
+_IMPORTERS = ("<frozen importlib", "<frozen zipimport", str(Path(importlib.__file__).parent) + os.sep)
 
 
 def workspace_types(fullname: str) -> Fill | None:
     """Return the function that fills the module `fullname`, `my_msgs` or `my_msgs.msg`; None if nobody has it.
 
     Workspaces and entry points are read for a name that is installed nowhere, so that imports stay fast; and not for
-    the standard library's files: `pickle` looks for Jython's `org.python.core` each time.
+    those of Jython, which the standard library looks for: `pickle` tries `org.python.core`, and `platform` `java.lang`.
     """
     top, dot, inner = fullname.partition(".")
     kind, _, private = inner.partition(".")
-    if top in TOPS or top in sys.stdlib_module_names or (dot and kind not in KINDS):
+    if top in TOPS or top in sys.stdlib_module_names or top in _JYTHON or (dot and kind not in KINDS):
         return None
     real = None if dot else FINDER.real(top)
     if real is not None and real.loader is not None:  # a folder that is not a package has none
         return None
-    importing = _importing_file()
-    if importing is not None and str(importing).startswith(_STANDARD) and "-packages" not in str(importing):
-        return None
-    fill = _private(fullname) if private else _of_workspace(fullname, importing)
+    fill = _private(fullname) if private else _of_workspace(fullname)
     if fill is None and top in INTERFACES.added():  # last: reading entry points takes ten milliseconds
         return room_fill(fullname)
     return fill
@@ -125,7 +122,8 @@ def _private(fullname: str) -> Fill | None:
     return functools.partial(fill_private, fullname, types) if types else None
 
 
-def _of_workspace(fullname: str, file: Path | None) -> Fill | None:
+def _of_workspace(fullname: str) -> Fill | None:
+    file = _importing_file()
     home = None if file is None else workspace_of(file.parent)
     with WORKSPACE_TYPES.forgetting():
         if home is not None:

@@ -46,6 +46,15 @@ def test_types_of_the_workspace_of_a_file_are_found(workspace: Path) -> None:
 
 
 @pytest.mark.usefixtures("compat")
+def test_types_are_found_by_a_name_that_is_a_text(workspace: Path) -> None:
+    (workspace / "tests/test_named.py").write_text(
+        "import importlib\nlevel = importlib.import_module('my_levels.msg').Level(height=2.0)\n"
+    )
+    module: Any = load_file(workspace / "tests/test_named.py")
+    assert module.level.height == 2.0
+
+
+@pytest.mark.usefixtures("compat")
 def test_types_are_found_where_rosidl_defines_them(workspace: Path) -> None:
     (workspace / "interfaces/my_levels/action").mkdir()
     (workspace / "interfaces/my_levels/action/FillUp.action").write_text("---\n---\nfloat64 height\n")
