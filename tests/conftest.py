@@ -238,9 +238,13 @@ def known_as_robolink(monkeypatch: pytest.MonkeyPatch) -> None:
 def _as_before() -> Iterator[None]:
     """End the default context, the signal handlers, what was set about logging, and what was changed of the process."""
     console, now = output.console, output.now
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     with process_as_before():
         yield
     try_shutdown(uninstall_handlers=True)
+    for number, handler in handlers.items():  # a coroutine whose loop was closed never leaves its block of handlers
+        if signal.getsignal(number) != handler:
+            signal.signal(number, handler)
     output.console, output.now = console, now
     logging.clear_config()
 
