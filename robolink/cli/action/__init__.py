@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli.shared import complete
+from robolink.cli.shared import complete, options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,6 +45,12 @@ def _served() -> Iterator[tuple[str, str]]:
 Action = Annotated[
     str,
     typer.Argument(help="Name of the action, such as /dock.", metavar="ACTION", autocompletion=action_names),
+]
+Type = Annotated[
+    str,
+    typer.Argument(
+        help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=type_of_action
+    ),
 ]
 ShowTypes = Annotated[bool, typer.Option("--show-types", "-t", help="Print the types too.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
@@ -122,12 +128,7 @@ def show_info(
 def send_goal(
     ctx: typer.Context,
     action: Action,
-    type_: Annotated[
-        str,
-        typer.Argument(
-            help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=type_of_action
-        ),
-    ] = "",
+    type_: Type = "",
     values: Annotated[
         str | None, typer.Argument(help="Goal in YAML, such as '{order: 10}'.", metavar="[VALUES]")
     ] = None,
@@ -159,12 +160,7 @@ def send_goal(
 def echo_messages(
     ctx: typer.Context,
     action: Action,
-    type_: Annotated[
-        str,
-        typer.Argument(
-            help="Its type; looked up on the network by default.", metavar="[TYPE]", autocompletion=type_of_action
-        ),
-    ] = "",
+    type_: Type = "",
     interfaces: Annotated[
         str | None,
         typer.Option(
@@ -178,18 +174,11 @@ def echo_messages(
     csv: Annotated[
         bool, typer.Option("--csv", help="Print the fields of a message in one line, separated by commas.")
     ] = False,
-    full_length: Annotated[
-        bool, typer.Option("--full-length", "-f", help="Print arrays and strings at full length.")
-    ] = False,
-    length: Annotated[
-        int,
-        typer.Option(
-            "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
-        ),
-    ] = 128,
-    no_arr: Annotated[bool, typer.Option("--no-arr", help="Print only type and length of arrays.")] = False,
-    no_str: Annotated[bool, typer.Option("--no-str", help="Print only the length of strings.")] = False,
-    flow: Annotated[bool, typer.Option("--flow-style", help="Print YAML in flow style, on one line.")] = False,
+    full_length: options.FullLength = False,
+    length: options.Length = 128,
+    no_arr: options.NoArr = False,
+    no_str: options.NoStr = False,
+    flow: options.Flow = False,
 ) -> None:
     """Print feedback and status of an action, and goals, cancellations and results if introspection is enabled."""
     from robolink.cli.action.echo import INTERFACES, Format, echo

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robolink.cli.shared import complete
+from robolink.cli.shared import complete, options
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -150,18 +150,11 @@ def echo_events(
         bool, typer.Option("--csv", help="Print the fields of an event in one line, separated by commas.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a JSON object for each event.")] = False,
-    full_length: Annotated[
-        bool, typer.Option("--full-length", "-f", help="Print arrays and strings at full length.")
-    ] = False,
-    length: Annotated[
-        int,
-        typer.Option(
-            "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
-        ),
-    ] = 128,
-    no_arr: Annotated[bool, typer.Option("--no-arr", help="Print only type and length of arrays.")] = False,
-    no_str: Annotated[bool, typer.Option("--no-str", help="Print only the length of strings.")] = False,
-    flow: Annotated[bool, typer.Option("--flow-style", help="Print YAML in flow style, on one line.")] = False,
+    full_length: options.FullLength = False,
+    length: options.Length = 128,
+    no_arr: options.NoArr = False,
+    no_str: options.NoStr = False,
+    flow: options.Flow = False,
 ) -> None:
     """Print requests and responses of a service whose introspection is enabled, until Ctrl-C."""
     from robolink.cli.service import verbs

@@ -1,4 +1,4 @@
-"""Options that several commands take: seconds, one of a few names, and the enclave whose keys they have."""
+"""Options that several commands take: seconds, how messages are printed, one of a few names, and the enclave."""
 
 from __future__ import annotations
 
@@ -22,6 +22,19 @@ def seconds(flag: str, text: str, *, short: str = "") -> Any:
     flags = (flag, short) if short else (flag,)
     return typer.Option(*flags, metavar="S", help=text, callback=check)
 
+
+# How messages are printed
+
+FullLength = Annotated[bool, typer.Option("--full-length", "-f", help="Print arrays and strings at full length.")]
+Length = Annotated[
+    int,
+    typer.Option(
+        "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
+    ),
+]
+NoArr = Annotated[bool, typer.Option("--no-arr", help="Print only type and length of arrays.")]
+NoStr = Annotated[bool, typer.Option("--no-str", help="Print only the length of strings.")]
+Flow = Annotated[bool, typer.Option("--flow-style", help="Print YAML in flow style, on one line.")]
 
 GRAPH_FORMATS = ["mermaid", "dot"]
 """Formats of a graph as text: Mermaid for Markdown, DOT for Graphviz."""

@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from robolink.cli.shared import options
 from robolink.cli.topic import options as opt
 
 app = typer.Typer(no_args_is_help=True, help="List topics, print and publish messages, measure rates.")
@@ -113,11 +114,11 @@ def echo_messages(
     as_json: opt.AsJson = False,
     raw: opt.Raw = False,
     info: opt.MessageInfo = False,
-    full_length: opt.FullLength = False,
-    length: opt.Length = 128,
-    no_arr: opt.NoArr = False,
-    no_str: opt.NoStr = False,
-    flow: opt.Flow = False,
+    full_length: options.FullLength = False,
+    length: options.Length = 128,
+    no_arr: options.NoArr = False,
+    no_str: options.NoStr = False,
+    flow: options.Flow = False,
     clear: opt.Clear = False,
     image: opt.AsImage = False,
     no_lost: opt.NoLost = False,

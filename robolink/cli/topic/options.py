@@ -113,16 +113,6 @@ MessageInfo = Annotated[
     bool,
     _flag("--include-message-info", "-i", help="Print the source timestamp and other information of each message."),
 ]
-FullLength = Annotated[bool, _flag("--full-length", "-f", help="Print arrays and strings at full length.")]
-Length = Annotated[
-    int,
-    typer.Option(
-        "--truncate-length", "-l", metavar="N", help="Length to which arrays and strings are truncated.", min=0
-    ),
-]
-NoArr = Annotated[bool, _flag("--no-arr", help="Print only type and length of arrays.")]
-NoStr = Annotated[bool, _flag("--no-str", help="Print only the length of strings.")]
-Flow = Annotated[bool, _flag("--flow-style", help="Print YAML in flow style, on one line.")]
 Clear = Annotated[bool, _flag("--clear", "-c", help="Clear the screen before each message.")]
 AsImage = Annotated[bool, _flag("--image", help="Draw a sensor_msgs/msg/Image, in a terminal with 24-bit colours.")]
 NoLost = Annotated[bool, _flag("--no-lost-messages", help="Do not report lost messages.")]
