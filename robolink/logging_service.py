@@ -38,7 +38,7 @@ class LoggingService:
         ]
         for name, srv_type, answer, refusal in services:
             service = node.create_service(srv_type, f"~/{name}", answer, qos_profile=qos_profile_services_default)
-            service.look_first = functools.partial(look_at, srv_type.Response, refusal)
+            service.look_first = functools.partial(look_at, srv_type, refusal)
 
     def _get(self, request: Get.Request, response: Get.Response) -> Get.Response:
         response.levels = [LoggerLevel(name=name, level=logging.get_logger_level(name)) for name in request.names]

@@ -54,7 +54,7 @@ class ParameterService:
         own = node.get_name()
         for name, srv_type, answer, refusal in services:
             service = node.create_service(srv_type, f"{own}/{name}", answer, qos_profile=qos_profile_parameters)
-            service.look_first = functools.partial(look_at, srv_type.Response, refusal)
+            service.look_first = functools.partial(look_at, srv_type, refusal)
 
     def _alive(self) -> ParameterNode:
         node = self._node()

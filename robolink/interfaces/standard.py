@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import MessageError, NotFoundError, RobolinkError, nearest
 from robolink.extensions import Registry, module_path
@@ -123,22 +123,42 @@ def _type(package: str, kind: str, short: str) -> type[Any] | None:
 
 
 def _make(package: str, kind: str, short: str) -> type[Any]:
-    from robolink.message.building import build  # late: messages import this package
-    from robolink.message.definition import parse
+    from robolink.message.class_factory import deferred_service_class  # late: messages import this package
 
     folder = INTERFACES.get(package)
     assert folder is not None
     path = folder / kind / f"{short}.{kind}"
     if path in _making:
         raise MessageError(f"a message cannot contain itself: {path}")
-    _making.append(path)
-    try:
-        made = build(parse(path.read_text(encoding="utf-8"), f"{package}/{kind}/{short}", str(path)), _nested)
-    finally:
-        _making.pop()
+    made: type[Any]
+    if kind == "srv" and package in packages():
+        made = deferred_service_class(f"{package}/{kind}/{short}", functools.partial(_complete, path))
+    else:
+        made = _built(path, package, kind, short)
     _place(made, package, kind, short)
     _made[package, kind, short] = made
     return made
+
+
+def _built(path: Path, package: str, kind: str, short: str) -> type[Any]:
+    from robolink.message.building import build
+    from robolink.message.definition import parse
+
+    _making.append(path)
+    try:
+        return build(parse(path.read_text(encoding="utf-8"), f"{package}/{kind}/{short}", str(path)), _nested)
+    finally:
+        _making.pop()
+
+
+def _complete(path: Path, service: type[Any]) -> None:
+    """Make the messages of a service, unless another thread has done it meanwhile."""
+    from robolink.message.class_factory import complete_service, is_deferred
+
+    with _lock:
+        if is_deferred(service):
+            package, kind, short = service.__ros_type__.split("/")
+            complete_service(service, _built(path, package, kind, short))
 
 
 def _nested(type_name: str) -> type[Any]:
@@ -147,6 +167,38 @@ def _nested(type_name: str) -> type[Any]:
     if found is None:
         raise NotFoundError("message type", type_name, ())
     return found
+
+
+def _known(type_name: str) -> type[Any] | None:
+    package, kind, short = [*type_name.split("/"), "", ""][:3]
+    return _made.get((package, kind, short))
+
+
+class Stated(NamedTuple):
+    """Properties of a standard type that are known without its fields."""
+
+    type_hash: str
+    """Its RIHS01 hash."""
+    has_fixed_numbers: bool
+    """True if it, or a message inside it, has a fixed number of numbers, for which its endpoints import numpy."""
+
+
+HASHES = FOLDER / "type_hashes.txt"
+"""A line for each standard type: its name, its hash, and `numpy` for one with fixed numbers."""
+
+
+def stated(cls: type[Any]) -> Stated | None:
+    """Return the line of `HASHES` about a class; None for one that is not a standard type.
+
+    To compute it, all that a type is made of is described and hashed, for which OpenSSL is loaded: 3.5 MB of a node's
+    memory and a twentieth of its start.
+    """
+    type_name = str(cls.__ros_type__)
+    if _known(type_name) is not cls or type_name.partition("/")[0] not in packages():
+        return None
+    _, _, rest = HASHES.read_bytes().partition(f"\n{type_name} ".encode())
+    words = rest.partition(b"\n")[0].decode().split(" ")
+    return Stated(words[0], words[-1] == "numpy") if words[0] else None
 
 
 # Where they are
@@ -171,7 +223,8 @@ def _place(made: Any, package: str, kind: str, short: str) -> None:
     home = _homes.get((package, kind))
     module = home(short) if home is not None else f"{ROOT}.{package}.{kind}"
     for each in (made, *(vars(made)[part] for part in PARTS if part in vars(made))):
-        each.__module__ = module
+        if isinstance(each, type):  # not what is deferred
+            each.__module__ = module
 
 
 class StandardFinder:
@@ -221,7 +274,7 @@ def _attribute(module: ModuleType, package: str, kind: str, name: str) -> Any:
     short, _, part = name.partition("_")
     found: Any = None if name.startswith("_") else _type(package, kind, short)
     if found is not None and part:
-        found = vars(found).get(part)
+        found = getattr(found, part) if part in vars(found) else None
     if found is None:
         raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'{nearest(name, module.__all__)}")
     vars(module)[name] = found

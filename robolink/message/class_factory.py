@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 import msgspec
@@ -12,7 +13,7 @@ from robolink.message.action import Action
 from robolink.message.annotations import AtMost, FieldType, Primitive, Sequence, Size, once_per_type
 from robolink.message.base import Message, MessageMeta
 from robolink.message.cdr_layout import SIZES
-from robolink.message.service import Service
+from robolink.message.service import DeferredPart, Service
 from robolink.message.spelling import split_type_name
 
 PRIMITIVES: dict[str, Any] = {
@@ -109,6 +110,29 @@ def service_class(
     """Create a service class of its two messages."""
     body = {**_body(type_name, doc, text), "Request": request, "Response": response}
     return type(body["__qualname__"], (Service,), body)
+
+
+def deferred_service_class(type_name: str, make: Callable[[type[Service]], object]) -> type[Service]:
+    """Create a service class that gets its messages from `make`, by `complete_service`, when one is asked for."""
+    body = _body(type_name, None, None) | {name: DeferredPart(make, name) for name in DEFERRED}
+    return type(body["__qualname__"], (Service,), body, deferred=type_name)
+
+
+def complete_service(service: Any, made: type[Service]) -> None:
+    """Set the attributes of a deferred service class to those of another class of the same type."""
+    for name in DEFERRED:
+        setattr(service, name, vars(made)[name])
+    for part in (made.Request, made.Response):
+        part.__module__ = service.__module__
+
+
+def is_deferred(service: type[Service]) -> bool:
+    """True if a service class has no messages yet."""
+    return isinstance(vars(service)["Request"], DeferredPart)
+
+
+DEFERRED = ("__doc__", "__ros_text__", "Request", "Response")
+"""Attributes of a service class that are made when one of them is asked for."""
 
 
 def action_class(type_name: str, parts: dict[str, type[Message]], doc: str | None, text: str | None) -> type[Action]:

@@ -140,7 +140,10 @@ def has_buffer_fields(cls: type[Any]) -> bool:
 @once_per_type
 def type_hash(cls: type[Any]) -> str:
     """Return the RIHS01 hash of `cls`, a message, service or action class."""
-    return hash_of(described(cls))
+    from robolink.interfaces.standard import stated  # late: that package needs this one
+
+    known = stated(cls)
+    return hash_of(described(cls)) if known is None else known.type_hash
 
 
 def type_name(cls: type[Any]) -> str:

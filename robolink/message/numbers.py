@@ -46,9 +46,15 @@ def import_numpy_for(cls: type[Any]) -> None:
     Endpoints call this when they are made: the import takes 0.1 to 0.7 s, which would stop all timers if the first
     message did it within a callback. It is not done with the package, since most programs never make such a message.
     """
-    parts = (cls,) if hasattr(cls, "__ros_fields__") else (cls.Request, cls.Response)
-    if any(map(has_fixed_numbers, parts)):
+    if has_fixed_numbers(cls) if hasattr(cls, "__ros_fields__") else _service_has_fixed_numbers(cls):
         import numpy  # noqa: F401 - for what comes
+
+
+def _service_has_fixed_numbers(cls: type[Any]) -> bool:
+    from robolink.interfaces.standard import stated  # late: that package needs this one
+
+    known = stated(cls)
+    return any(map(has_fixed_numbers, (cls.Request, cls.Response))) if known is None else known.has_fixed_numbers
 
 
 _settling = threading.RLock()

@@ -11,6 +11,7 @@ class SetBool(Service):
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from robolink.exceptions import MessageError
@@ -53,6 +54,24 @@ def name_part(whole: Any, cls: Any, part: str) -> None:
     cls.__name__ = f"{whole.__name__}_{part}"
 
 
+class DeferredPart:
+    """Descriptor in a service class whose messages are made at their first use.
+
+    Nobody calls most services of a node, those for its parameters; making their messages took a tenth of its start.
+
+    Args:
+        make: Function that gives the class its messages, its docstring and its text, in the place of such descriptors.
+        name: Name of the attribute.
+    """
+
+    def __init__(self, make: Callable[[type[Service]], object], name: str) -> None:
+        self._make, self._name = make, name
+
+    def __get__(self, _: object, owner: type[Service]) -> Any:
+        self._make(owner)
+        return getattr(owner, self._name)
+
+
 class Service:
     """Base class of service types; a subclass has the message classes `Request` and `Response`."""
 
@@ -73,7 +92,10 @@ class Service:
     else:
         Event = _EventOfService()
 
-    def __init_subclass__(cls) -> None:
+    def __init_subclass__(cls, deferred: str = "") -> None:
+        if deferred:  # see DeferredPart
+            cls.__ros_type__ = deferred
+            return
         for part in ("Request", "Response"):
             found: Any = cls.__dict__.get(part)
             if not hasattr(found, "__ros_fields__"):

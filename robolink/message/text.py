@@ -37,7 +37,7 @@ def text_of(cls: type[Any]) -> str:
     A class that came from an interface file has that file's text. Of a class written in Python the docstring stands
     at the head, and comments and docstrings of its fields stand beside them.
     """
-    known = cls.__dict__.get("__ros_text__")
+    known = getattr(cls, "__ros_text__", None) if "__ros_text__" in vars(cls) else None
     if known is not None:
         return str(known)
     if hasattr(cls, "__ros_fields__"):

@@ -24,10 +24,10 @@ def no_room(reason: str) -> dict[str, Any]:
     return {}
 
 
-def look_at(response_type: type[Any], refusal: Refusal, payload: bytes) -> tuple[Any, str]:
-    """Return the response that refuses a request, and the reason; (None, '') for what is within the limits."""
+def look_at(srv_type: type[Any], refusal: Refusal, payload: bytes) -> tuple[Any, str]:
+    """Return a service's response that refuses a request, and the reason; (None, '') for what is within the limits."""
     reason = why_refused(payload)
-    return (response_type(**refusal(reason)), reason) if reason else (None, "")
+    return (srv_type.Response(**refusal(reason)), reason) if reason else (None, "")
 
 
 def why_refused(payload: bytes) -> str:

@@ -157,7 +157,7 @@ def check_interfaces(package: str) -> None:
             name = f"{package}/{kind}/{short}"
             _expect(short[:1].isupper() and short.isalnum(), name, "a type's name is letters and digits: WheelSpeeds")
             found = find(name, kind)
-            parts = [vars(found)[each] for each in _PARTS if each in vars(found)] or [found]
+            parts = [getattr(found, each) for each in _PARTS if each in vars(found)] or [found]
             for each in parts:
                 raw = serialize_message(each())
                 _expect(serialize_message(deserialize_message(raw, each)) == raw, name, "it is another one once read")
