@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from types import CoroutineType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from robolink.exceptions import ExternalShutdownException as ExternalShutdownException
@@ -230,7 +230,7 @@ class Executor:
         coroutine = None
         try:
             outcome = entity.execute(taken)
-            if outcome is not None and inspect.iscoroutine(outcome):
+            if outcome is not None and isinstance(outcome, CoroutineType):
                 coroutine = outcome  # its group is busy until it ends
                 task: Task[Any] = Task(coroutine, executor=self)
                 TaskRunner(task, self, entity).execute(task)

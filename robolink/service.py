@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import inspect
 from collections.abc import Callable, Coroutine
+from types import CoroutineType
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from robolink.callback_groups import CallbackGroup
@@ -152,7 +152,7 @@ class Service(ServiceEnd):
         `header` is that of the request.
         """
         response = self.callback(request, self.srv_type.Response())
-        if inspect.iscoroutine(response):
+        if isinstance(response, CoroutineType):
             return self._answer_later(response, header)
         self.send_response(response, header)
         return None

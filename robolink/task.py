@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import inspect
 import sys
 import threading
 import warnings
 import weakref
 from collections.abc import Callable, Generator
+from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from robolink.system.terminal import fit
@@ -207,6 +207,12 @@ def _complete(woken: asyncio.Future[None]) -> None:
         woken.set_result(None)
 
 
+def _makes_coroutines(handler: Any) -> bool:
+    import inspect  # late: it takes a node's start 5 ms, and a callback that is a coroutine is known without
+
+    return inspect.iscoroutinefunction(handler)
+
+
 class Task(Future[T]):
     """Function or coroutine that an executor runs; its result is that of the future.
 
@@ -227,7 +233,7 @@ class Task(Future[T]):
         super().__init__(executor=executor)
         self._handler: Any = handler
         self._args, self._kwargs = args or (), kwargs or {}
-        if inspect.iscoroutinefunction(handler):
+        if not isinstance(handler, CoroutineType) and _makes_coroutines(handler):
             self._handler = handler(*self._args, **self._kwargs)
             self._args, self._kwargs = (), {}
         self._executing = False
@@ -250,7 +256,7 @@ class Task(Future[T]):
             self._task_lock.release()
 
     def _step(self) -> None:
-        if inspect.iscoroutine(self._handler):
+        if isinstance(self._handler, CoroutineType):
             try:
                 self._handler.send(None)
             except StopIteration as end:
@@ -280,6 +286,6 @@ class Task(Future[T]):
         """Cancel the task, unless it is done; a coroutine is closed."""
         if self._done:
             return
-        if inspect.iscoroutine(self._handler) and not self._executing:
+        if isinstance(self._handler, CoroutineType) and not self._executing:
             self._handler.close()
         super().cancel()

@@ -12,6 +12,7 @@ from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor, Paramete
 from robolink.message import Service, type_hash, type_name
 from robolink.message.description import described, to_message
 from robolink.parameter import Parameter
+from robolink.system.patterns import late
 from robolink.system.terminal import shown
 from robolink.wire import NO_HASH
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 SERVICE_NAME = "get_type_description"
-HASH = re.compile(r"RIHS01_[0-9a-f]{64}", re.ASCII)
+HASH = late(r"RIHS01_[0-9a-f]{64}", re.ASCII)
 
 
 class TypeDescriptionService:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
 from typing import Any
+
+import msgspec
 
 from robolink.arguments.overrides import Override, Value, by_first_pattern, overrides_for
 from robolink.arguments.remapping import RemapKind, RemapRule, parse_remap_rule, remap_node
@@ -15,6 +16,7 @@ from robolink.impl.logging_severity import (
     LoggingSeverityError,
     get_logging_severity_from_string,
 )
+from robolink.system.patterns import late
 
 WIDE_PARAMETER = "--wide-param"
 """robolink's own flag for a parameter that was given to more nodes than this one, so that it may lack it.
@@ -39,8 +41,7 @@ class UnknownROSArgsError(RobolinkError, RuntimeError, ValueError):
         super().__init__(f"unknown ROS arguments: {self.unknown_args}{hint}")
 
 
-@dataclass(frozen=True)
-class Arguments:
+class Arguments(msgspec.Struct, frozen=True):
     """Parsed command line: the arguments of ROS, and `unparsed`, those of the program.
 
     The logger name '' in `log_levels` stands for the root. Settings that were not given are None.
@@ -71,9 +72,8 @@ class Arguments:
 
     def over(self, base: Arguments) -> Arguments:
         """Return these arguments, a node's own, with those of `base`, the program's, wherever these say nothing."""
-        settings = [each.name for each in fields(self) if each.default is None]
-        given = {name: getattr(self, name) for name in settings if getattr(self, name) is not None}
-        return replace(
+        given = {name: value for name in _SETTINGS if (value := getattr(self, name)) is not None}
+        return msgspec.structs.replace(
             base,
             remap_rules=self.remap_rules + base.remap_rules,  # the first rule wins
             parameter_overrides=base.parameter_overrides + self.parameter_overrides,  # the last value wins
@@ -81,6 +81,9 @@ class Arguments:
             unparsed=self.unparsed,
             **given,
         )
+
+
+_SETTINGS = ("enclave", "stdout_logs", "rosout_logs", "external_lib_logs", "log_file_name", "log_config_file")
 
 
 def parse_arguments(args: Sequence[str]) -> Arguments:
@@ -192,7 +195,7 @@ class _Parser:
         self.settings["log_config_file"] = value
 
 
-_PARAMETER = re.compile(r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)", re.DOTALL)
+_PARAMETER = late(r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)", re.DOTALL)
 _REMAP = (_Parser.remap, "from:=to")
 _PARAM = (_Parser.parameter, "name:=value")
 _ENCLAVE = (_Parser.enclave, "the path of an enclave")

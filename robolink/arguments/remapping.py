@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import Flag
+
+import msgspec
 
 from robolink.exceptions import NameValidationException, nearest
 from robolink.expand_topic_name import expand_topic_name
+from robolink.system.patterns import late
 from robolink.validate_full_topic_name import validate_full_topic_name
 from robolink.validate_namespace import validate_namespace
 from robolink.validate_node_name import validate_node_name
@@ -24,8 +26,7 @@ class RemapKind(Flag):
     SERVICE = 8
 
 
-@dataclass(frozen=True)
-class RemapRule:
+class RemapRule(msgspec.Struct, frozen=True):
     """Remap rule: `match` becomes `replacement`, in the node called `node` only, or in all if that is None.
 
     `match` is empty in rules for node names and namespaces.
@@ -37,14 +38,14 @@ class RemapRule:
     node: str | None = None
 
 
-_RULE = re.compile(
+_RULE = late(
     r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=|//))?"  # `rostopic://` names no node, `camera:/image` does
     r"(?:(?P<scheme>rostopic|rosservice)://)?"
     r"(?P<match>.*?):=(?P<replacement>.*)",
     re.DOTALL,
 )
 # As rcl reads rules: narrower than topics are, which may have {node} in them, two underscores, or be ~ alone.
-_NAME = re.compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+_NAME = late(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
 _SCHEMES = {
     None: RemapKind.TOPIC | RemapKind.SERVICE,
     "rostopic": RemapKind.TOPIC,

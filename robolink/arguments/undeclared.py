@@ -5,7 +5,6 @@ Most are misspelt, and ROS 2 keeps silent about them. The section `/**` of a fil
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Protocol
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 from robolink.arguments.overrides import Override
 from robolink.exceptions import ExternalShutdownException, closest, nearest
 from robolink.logging import get_logger
+from robolink.system.patterns import late
 from robolink.system.terminal import shown
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def _warn(override: Override, logger: str, what: str) -> None:
     get_logger(logger).warning(f"parameter '{override.name}' was given, but {what}")
 
 
-_NUMBER = re.compile(r"[0-9]+")
+_NUMBER = late(r"[0-9]+")
 
 MOST = 3
 """Largest number of sections that are reported where nothing of all files is for any node."""

@@ -16,8 +16,6 @@ from robolink.compat.maker import TOPS, defined_in, fill_private, hidden, room_f
 from robolink.extensions.optional import is_here
 from robolink.interfaces import KINDS
 from robolink.interfaces.standard import INTERFACES
-from robolink.workspace import workspace_of
-from robolink.workspace.interfaces import WORKSPACE_TYPES, interface_module, use_interfaces
 from robolink.workspace.modules import FINDER, Fill
 
 _OPENCV = "robolink.companions.opencv"
@@ -92,7 +90,7 @@ def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
 
 
 _OWN = str(Path(__file__).parents[1]) + os.sep
-_JYTHON = ("org", "java")
+_NEVER_TYPES = ("java", "org", "typing_extensions")
 _IMPORTERS = ("<frozen importlib", "<frozen zipimport", str(Path(importlib.__file__).parent) + os.sep)
 
 
@@ -100,11 +98,12 @@ def workspace_types(fullname: str) -> Fill | None:
     """Return the function that fills the module `fullname`, `my_msgs` or `my_msgs.msg`; None if nobody has it.
 
     Workspaces and entry points are read for a name that is installed nowhere, so that imports stay fast; and not for
-    those of Jython, which the standard library looks for: `pickle` tries `org.python.core`, and `platform` `java.lang`.
+    those that libraries look for in vain: `pickle` tries `org.python.core`, `platform` `java.lang`, and msgspec, which
+    workspaces need, `typing_extensions`.
     """
     top, dot, inner = fullname.partition(".")
     kind, _, private = inner.partition(".")
-    if top in TOPS or top in sys.stdlib_module_names or top in _JYTHON or (dot and kind not in KINDS):
+    if top in TOPS or top in sys.stdlib_module_names or top in _NEVER_TYPES or (dot and kind not in KINDS):
         return None
     real = None if dot else FINDER.real(top)
     if real is not None and real.loader is not None:  # a folder that is not a package has none
@@ -123,6 +122,9 @@ def _private(fullname: str) -> Fill | None:
 
 
 def _of_workspace(fullname: str) -> Fill | None:
+    from robolink.workspace.find import workspace_of  # late: most imports are not those of a workspace's types
+    from robolink.workspace.interfaces import WORKSPACE_TYPES, interface_module, use_interfaces
+
     file = _importing_file()
     home = None if file is None else workspace_of(file.parent)
     with WORKSPACE_TYPES.forgetting():

@@ -199,10 +199,16 @@ COMMANDS = r"ros2(?:cli|action|bag|component|interface|launch|lifecycle|node|par
 """Pattern of the packages of ROS 2's command line, as text."""
 
 
+_ENDS = ("_msgs", "_interfaces", "_srvs", "_actions")
+"""Ends of the names of message packages."""
+
+
 def instead_of(name: str) -> str:
     """Return advice for a name that robolink lacks; '' for a name that is not ROS's."""
     if name in INSTEAD:
         return INSTEAD[name]
+    if not name.startswith(("ament_", "ros2")) and not name.endswith(_ENDS):
+        return ""  # most imports: nothing is compiled for them
     if re.fullmatch(COMMANDS, name):
         return "'robolink' is the command line, and a node's methods, such as get_topic_names_and_types, read the graph"
     if re.fullmatch(LINTERS, name):

@@ -13,6 +13,7 @@ from typing import NamedTuple, TextIO, TypeAlias
 
 from robolink.impl.logging_severity import LoggingSeverity
 from robolink.system import clocks
+from robolink.system.patterns import late
 from robolink.system.terminal import fit, knows_colours
 
 DEFAULT_FORMAT = "[{severity}] [{time}] [{name}]: {message}"
@@ -141,7 +142,7 @@ _TOKENS: dict[str, Callable[[Record], str]] = {
     "time_as_nanoseconds": lambda record: str(record.stamp_ns),
     "date_time_with_ms": lambda record: _date(record.stamp_ns),
 }
-_TOKEN = re.compile(r"\{(" + "|".join(_TOKENS) + r")\}")
+_TOKEN = late(r"\{(" + "|".join(_TOKENS) + r")\}")
 _ESCAPES = {"a": "\a", "b": "\b", "n": "\n", "r": "\r", "t": "\t", "x1b": "\x1b"}
 
 

@@ -13,16 +13,15 @@ from typing import Any
 import msgspec
 
 from robolink.message.annotations import NUMERIC, FieldType
+from robolink.system.patterns import late
 from robolink.system.terminal import quoted, shown, with_article
 
-INTEGER = re.compile(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
+INTEGER = late(r"[+-]?(?:[0-9](?:_?[0-9])*|0[xX](?:_?[0-9a-fA-F])+|0[oO](?:_?[0-7])+|0[bB](?:_?[01])+)")
 DIGITS = "[0-9](?:_?[0-9])*"
-FLOAT = re.compile(
-    rf"[+-]?(?:(?:{DIGITS}\.?(?:{DIGITS})?|\.{DIGITS})(?:e[+-]?{DIGITS})?|inf|infinity|nan)", re.IGNORECASE
-)
+FLOAT = late(rf"[+-]?(?:(?:{DIGITS}\.?(?:{DIGITS})?|\.{DIGITS})(?:e[+-]?{DIGITS})?|inf|infinity|nan)", re.IGNORECASE)
 QUOTED = r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'"
-ELEMENT = re.compile(rf"\s*((?:{QUOTED})\s*|[^,\"'\s][^,]*)(?:,|\Z)", re.DOTALL)
-ESCAPE = re.compile(r"""\\(?:([ntvbrfa\\?'"])|([0-7]{1,3})|x([0-9a-fA-F]{1,2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8}))""")
+ELEMENT = late(rf"\s*((?:{QUOTED})\s*|[^,\"'\s][^,]*)(?:,|\Z)", re.DOTALL)
+ESCAPE = late(r"""\\(?:([ntvbrfa\\?'"])|([0-7]{1,3})|x([0-9a-fA-F]{1,2})|u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8}))""")
 ESCAPED = {"n": "\n", "t": "\t", "v": "\v", "b": "\b", "r": "\r", "f": "\f", "a": "\a"}
 LONGEST_NUMBER = 400
 BOOLS = {"true": True, "1": True, "false": False, "0": False}

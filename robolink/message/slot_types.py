@@ -6,18 +6,18 @@ The names are those of ROS 2's IDL mapping (https://design.ros2.org/articles/leg
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import msgspec
 
 from robolink.message.annotations import FieldType
+from robolink.system.patterns import late
 
 IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
 """rosidl's names of the primitives where they differ from the .msg file's."""
 
 
-KIND = re.compile("/(msg|srv|action)/")
+KIND = late("/(msg|srv|action)/")
 """Middle part of a type name, which rosidl leaves out."""
 
 

@@ -6,17 +6,17 @@ can = "my_package.can:NETWORK"  # a Kind: --network can
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from robolink.extensions import Registry, optional
 from robolink.networks.request import ALIASES, NAMES, NetworkRequest, requested
+from robolink.system.patterns import late
 
 OWN = {"dds": "robolink.dds.network:NETWORK"}
 """Networks that come with robolink: where the Kind of each is, which is imported when it is requested."""
 
-_WORD = re.compile(r"[a-z][a-z0-9_]*")
+_WORD = late(r"[a-z][a-z0-9_]*")
 """Pattern of their names; a host may be called so, too, and goes last."""
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
+from robolink.system.patterns import late
 
 FIRST_PORT = 17447
 """Rendezvous port of domain 0; that of domain d is FIRST_PORT + d."""
@@ -24,7 +25,7 @@ NAMES = ("localhost", "lan", "off")
 ALIASES = {"subnet": "lan"}
 """Other names of these: `subnet` is ROS 2's word."""
 
-ENDPOINT = re.compile(r"(tcp|tls|quic|ws)/\S+:\d+")
+ENDPOINT = late(r"(tcp|tls|quic|ws)/\S+:\d+")
 """Pattern of Zenoh's endpoints, `tcp/HOST:PORT`."""
 
 NETWORK = "ROBOLINK_NETWORK"
@@ -40,7 +41,7 @@ OVERRIDE = "ZENOH_CONFIG_OVERRIDE"
 """Variable with Zenoh's settings, `path=json5;path=json5`, that have the last word."""
 
 _RANGES = {"": "localhost", "SYSTEM_DEFAULT": "localhost", "LOCALHOST": "localhost", "SUBNET": "lan", "OFF": "off"}
-_NAMES_A_NETWORK = re.compile(r"mode|(connect|listen)(/endpoints.*)?")
+_NAMES_A_NETWORK = late(r"mode|(connect|listen)(/endpoints.*)?")
 
 
 class NetworkRequest(NamedTuple):

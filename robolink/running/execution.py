@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
+from types import FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
 from robolink.exceptions import RobolinkError
@@ -37,6 +37,8 @@ class TimeoutObject:
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
     """Call a function, or call and await a coroutine function."""
+    import inspect  # late: it takes a node's start 5 ms
+
     return await callback(*args) if inspect.iscoroutinefunction(callback) else callback(*args)
 
 
@@ -93,6 +95,11 @@ class TaskRunner(Entity):
 
 def takes_arguments(function: Callable[..., Any], count: int) -> bool:
     """True if `function` can be called with `count` arguments, or does not tell."""
+    plain, own = (function.__func__, 1) if isinstance(function, MethodType) else (function, 0)
+    if isinstance(plain, FunctionType) and _tells_all(plain, own):
+        return _has_parameters(plain, count + own)  # most callbacks: nothing is imported for them
+    import inspect
+
     try:
         inspect.signature(function).bind(*[None] * count)
     except TypeError:
@@ -100,3 +107,23 @@ def takes_arguments(function: Callable[..., Any], count: int) -> bool:
     except ValueError:
         return True
     return True
+
+
+_VARARGS = 4
+"""Flag of the code of a function with `*args`, `inspect.CO_VARARGS`."""
+
+
+def _tells_all(function: FunctionType, bound: int) -> bool:
+    """True if the signature of a function is that of its code, and it takes what is bound to it."""
+    is_its_own = not vars(function).keys() & {"__wrapped__", "__signature__"}
+    return is_its_own and (not bound or bool(function.__code__.co_argcount or function.__code__.co_flags & _VARARGS))
+
+
+def _has_parameters(function: FunctionType, count: int) -> bool:
+    """True if a `def` or `lambda` can be called with `count` arguments by position."""
+    code, defaults = function.__code__, function.__defaults__ or ()
+    by_name = code.co_varnames[code.co_argcount : code.co_argcount + code.co_kwonlyargcount]
+    if not set(by_name) <= (function.__kwdefaults__ or {}).keys():
+        return False
+    has_room = count <= code.co_argcount or bool(code.co_flags & _VARARGS)
+    return has_room and count >= code.co_argcount - len(defaults)

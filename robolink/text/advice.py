@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
-import linecache
 import re
 import sys
 from collections.abc import Callable
@@ -11,6 +9,7 @@ from types import FrameType, FunctionType, MethodType, ModuleType, TracebackType
 from typing import Any
 
 from robolink.exceptions import RobolinkError, imported_as
+from robolink.system.patterns import late
 from robolink.text.callbacks import miscalled
 
 type_homes: Callable[[str], list[str]] = lambda name: []  # noqa: E731 - replaced by whoever knows the types
@@ -60,7 +59,7 @@ def _last_frame(trace: TracebackType) -> FrameType:
 
 # --- Names ------------------------------------------------------------------------------------------------------------
 
-_UNBOUND = re.compile(r"local variable '(\w+)'")
+_UNBOUND = late(r"local variable '(\w+)'")
 
 
 def _unknown_name(error: Any, frame: FrameType) -> str:
@@ -85,20 +84,26 @@ def _has(value: Any, name: str) -> bool:
     return known and name in vars(value)
 
 
+_OPTIMIZED = 1
+"""Flag of the code of a function, `inspect.CO_OPTIMIZED`: `inspect` takes a node's start 5 ms."""
+
+
 def _no_self(frame: FrameType) -> str:
-    if frame.f_code.co_flags & inspect.CO_OPTIMIZED:
+    if frame.f_code.co_flags & _OPTIMIZED:
         return f"is self the first parameter of {frame.f_code.co_name}()?"
     return "this line is in no function: it needs more spaces in front of it"
 
 
 def _style(frame: FrameType) -> str:
     """Return `robolink` for a program that imports robolink's names, and `rclpy` for one with those of ROS 2."""
+    import linecache  # late, as in all modules that describe errors: most programs make none
+
     text = "".join(linecache.getlines(frame.f_code.co_filename, frame.f_globals))
     imported = re.findall(r"^\s*(?:from|import)\s+(robolink|rclpy)\b", text, re.MULTILINE)
     return imported[0] if imported else imported_as()
 
 
-_NOT_IN_MODULE = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
+_NOT_IN_MODULE = late(r"cannot import name '(\w+)' from '([\w.]+)'")
 
 
 def _not_in_module(error: Any, frame: FrameType) -> str:
@@ -109,7 +114,7 @@ def _not_in_module(error: Any, frame: FrameType) -> str:
 
 # --- Attributes -------------------------------------------------------------------------------------------------------
 
-_ATTRIBUTE = re.compile(r"'(\w+)' object has no attribute '(\w+)'")
+_ATTRIBUTE = late(r"'(\w+)' object has no attribute '(\w+)'")
 
 
 def _unknown_attribute(error: Any, frame: FrameType) -> str:
@@ -156,7 +161,7 @@ def _wrong_type(error: TypeError, frame: FrameType) -> str:
     return next(by_text, "") or miscalled(error) or _method_without_self(text, frame) or _module_as_base(text, frame)
 
 
-_TOO_MANY = re.compile(r"(?:[\w.]+\.<locals>\.)?(\w+)\.(\w+)\(\) takes (\d+) positional arguments? but (\d+) w")
+_TOO_MANY = late(r"(?:[\w.]+\.<locals>\.)?(\w+)\.(\w+)\(\) takes (\d+) positional arguments? but (\d+) w")
 
 
 def _method_without_self(text: str, frame: FrameType) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import inspect
 import re
-import traceback
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType, TracebackType
 from typing import Any, NamedTuple
 
-_MISCALLED = re.compile(r"(?:[\w.<>]+\.)?(\w+)\(\) (?:takes|missing) ")
+from robolink.system.patterns import late
+
+_MISCALLED = late(r"(?:[\w.<>]+\.)?(\w+)\(\) (?:takes|missing) ")
 """Python's text for a call with too many or too few arguments."""
 
 
@@ -25,6 +26,8 @@ class Place(NamedTuple):
 
 def definition(function: Callable[..., Any]) -> Place | None:
     """Return where a function or method is defined; None for one that has no `def` in a file."""
+    import inspect  # late: it takes a node's start 5 ms
+
     code = getattr(inspect.unwrap(getattr(function, "__func__", function)), "__code__", None)
     if code is None or code.co_name == "<lambda>":
         return None
@@ -67,9 +70,17 @@ def callback_of(error: BaseException) -> tuple[Callable[..., Any], tuple[str, ..
 
 def _raiser(error: BaseException) -> Any:
     """Return the object whose method raised a TypeError, called by robolink itself; None for other errors."""
-    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)][-2:]
+    frames = _frames(error.__traceback__)[-2:]
     own = [frame.f_globals.get("__name__", "").startswith("robolink.") for frame in frames]
     return frames[-1].f_locals.get("self") if own == [True, True] and isinstance(error, TypeError) else None
+
+
+def _frames(trace: TracebackType | None) -> list[FrameType]:
+    found = list[FrameType]()
+    while trace is not None:
+        found.append(trace.tb_frame)
+        trace = trace.tb_next
+    return found
 
 
 def miscalled(error: BaseException) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from robolink.exceptions import AmbiguousNameError, NotFoundError, nearest
+from robolink.system.patterns import late
 
 MAX_NODE_NAME = 255
 MAX_TOPIC_NAME = 247
@@ -32,7 +33,7 @@ class Rule(NamedTuple):
 
 
 def _rules(*pairs: tuple[str, str]) -> tuple[Rule, ...]:
-    return tuple(Rule(re.compile(pattern), message) for pattern, message in pairs)
+    return tuple(Rule(late(pattern), message) for pattern, message in pairs)
 
 
 _EMPTY = (r"\A\Z", "must not be empty")
@@ -73,13 +74,22 @@ TOPIC_NAME_RULES = _rules(
 
 def find_problem(name: str, rules: Sequence[Rule], longest: int | None = None) -> Problem | None:
     """Return the first rule that the name breaks, and where; None for a valid name of at most `longest` characters."""
-    for pattern, message in rules:
-        match = pattern.search(name)
-        if match is not None:
-            return Problem(message, match.start(match.lastindex or 0))
+    if not _is_plain(name, rules):
+        for pattern, message in rules:
+            match = pattern.search(name)
+            if match is not None:
+                return Problem(message, match.start(match.lastindex or 0))
     if longest is not None and len(name) > longest:
         return Problem(f"must not be longer than {longest} characters, got {len(name)}", longest - 1)
     return None
+
+
+def _is_plain(name: str, rules: Sequence[Rule]) -> bool:
+    """True for a name without `~` and `{}` that breaks none of the rules: no pattern is compiled for it."""
+    tokens = name if rules is NODE_NAME_RULES else name.removeprefix("/")
+    if rules is FULL_NAME_RULES and tokens == name:
+        return False
+    return name.isascii() and all(map(str.isidentifier, (tokens,) if rules is NODE_NAME_RULES else tokens.split("/")))
 
 
 def absolute_namespace(namespace: str) -> str:

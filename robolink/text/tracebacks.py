@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import inspect
-import linecache
-import re
-import traceback
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
@@ -14,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import robolink.exceptions
 from robolink.exceptions import RobolinkError, closest
+from robolink.system.patterns import late
 from robolink.text.advice import advice
 from robolink.text.callbacks import place_of
 
@@ -23,6 +20,9 @@ if TYPE_CHECKING:
 
 def formatted(error: BaseException, trace: TracebackType | None = None) -> str:
     """Return an exception and its traceback as text, from `trace` on (default: all), without a final newline."""
+    import linecache  # late, as in all modules that describe errors: most programs make none
+    import traceback
+
     trace = trace or error.__traceback__
     _leave_out_search(trace)
     _leave_out_check(trace)
@@ -47,8 +47,8 @@ def advised(text: str, error: BaseException) -> str:
     return text if text != bare and not _PRIVATE.search(text) else bare + suggestion(error)
 
 
-_SUGGESTED = re.compile(r"\. Did you (mean|forget)[^?]*\?$")
-_PRIVATE = re.compile(r"attribute '[^_]\w*'\. Did you mean: '_")
+_SUGGESTED = late(r"\. Did you (mean|forget)[^?]*\?$")
+_PRIVATE = late(r"attribute '[^_]\w*'\. Did you mean: '_")
 """A suggestion of Python's that names something inside robolink: `_timers` for `on_timer`."""
 
 
@@ -67,6 +67,8 @@ def _leave_out_check(trace: TracebackType | None) -> None:
 
     The line tells a refusal from a fault of ours, whose frames are needed: it raises the error by a statement.
     """
+    import linecache
+
     users = None
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
@@ -79,7 +81,7 @@ def _leave_out_check(trace: TracebackType | None) -> None:
         trace = trace.tb_next
 
 
-_ENTRY = re.compile(r' +File "([^"]+)", line \d+')
+_ENTRY = late(r' +File "([^"]+)", line \d+')
 _OWN = str(Path(robolink.exceptions.__file__).parent)
 
 
@@ -139,7 +141,7 @@ def _last(trace: TracebackType | None) -> TracebackType | None:
 
 # --- Fields of messages -----------------------------------------------------------------------------------------------
 
-_UNKNOWN_FIELD = re.compile(r"'\w+' object has no attribute '(\w+)'")
+_UNKNOWN_FIELD = late(r"'\w+' object has no attribute '(\w+)'")
 
 
 def misspelt_field(error: BaseException) -> str:
@@ -163,6 +165,7 @@ def misspelt_field(error: BaseException) -> str:
 def _statement(trace: TracebackType) -> Iterator[ast.AST]:
     """Yield the syntax nodes of the smallest statement around the line that failed."""
     import ast  # late: most programs have no such error
+    import linecache
 
     tree = ast.parse("".join(linecache.getlines(trace.tb_frame.f_code.co_filename, trace.tb_frame.f_globals)))
     line = trace.tb_lineno
@@ -186,6 +189,7 @@ def _meant(node: ast.AST, name: str, trace: TracebackType) -> Any:
 def _value(node: ast.expr, trace: TracebackType) -> Any:
     """Return the value of a dotted name, without calling any code of the user's."""
     import ast
+    import inspect
 
     if isinstance(node, ast.Name):
         return {**trace.tb_frame.f_globals, **trace.tb_frame.f_locals}[node.id]

@@ -8,12 +8,12 @@ from __future__ import annotations
 import contextlib
 import datetime
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import SecurityError
+from robolink.system.patterns import late
 from robolink.transport.reach import SECURED, address_of, host_of, mode_of, port_of, reach, read
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _NOT_YET, _EXPIRED = 9, 10
 """OpenSSL's error numbers of certificates that are not valid yet, or no longer."""
 _OUT_OF_DATE = {_EXPIRED: "has expired", _NOT_YET: "is not valid yet (is this machine's clock right?)"}
 _WRONG_NAME = (62, 64)
-_CERTIFICATE = re.compile("-----BEGIN CERTIFICATE-----[^-]*-----END CERTIFICATE-----")
+_CERTIFICATE = late("-----BEGIN CERTIFICATE-----[^-]*-----END CERTIFICATE-----")
 _MONTHS = "JanFebMarAprMayJunJulAugSepOctNovDec"
 _SAID = {
     "UNKNOWN_CA": "it does not trust the authority that signed {}",

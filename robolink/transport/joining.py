@@ -13,11 +13,10 @@ from typing import NamedTuple
 import zenoh
 
 from robolink.exceptions import TransportError
-from robolink.networks import refusals
 from robolink.networks.request import FIRST_PORT, ROS_ROUTER, checked_domain
 from robolink.networks.settings import OFTEN
 from robolink.system import clocks
-from robolink.transport import addresses, certificates, lifetime, network, port_sharing
+from robolink.transport import lifetime, network, port_sharing
 from robolink.transport import zenoh_declare as declare
 from robolink.transport.port_sharing import PortClaim, is_taken
 from robolink.transport.reach import Reach, port_of, reach
@@ -65,7 +64,12 @@ def join(
     found = network.plan(requested, domain, environ, secure)
 
     def load(holds_port: bool = False) -> zenoh.Config:  # usually nobody looks for it at the rendezvous port
-        return addresses.named(found.config(holds_port=holds_port), named)
+        config = found.config(holds_port=holds_port)
+        if not named:
+            return config
+        from robolink.transport import addresses  # late, as all that few sessions need: sockets take 3 ms to import
+
+        return addresses.named(config, named)
 
     try:
         config = load()
@@ -75,10 +79,14 @@ def join(
             joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
             network.await_host(joined.session, found)
             return joined._replace(leaves_machine=within.leaves_machine, thinned=thinned)
+        from robolink.transport import certificates
+
         if wrong := certificates.faults(config):
             raise TransportError(f"cannot join the network '{found.request.value}': {'; '.join(wrong)}")
         return _listen_beside(load)._replace(leaves_machine=within.leaves_machine, thinned=thinned)
     except zenoh.ZError as error:
+        from robolink.transport import certificates
+
         reasons = [network.reason(error), *certificates.refusals(found.config(holds_port=False))]
         raise TransportError(f"cannot join the network '{found.request.value}': {'; '.join(reasons)}") from None
 
@@ -105,6 +113,8 @@ def _listen_beside(load: Callable[[], zenoh.Config]) -> Joined:
                 undo.pop_all()
                 return Joined(session, claim, bool(fixed) and not taken)
             lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
+            from robolink.transport import certificates
+
             refusals = certificates.refusals(config, holders)
     hint = "; ".join(refusals) or "stop it, or listen elsewhere in this process's configuration"
     where = " and ".join(taken) or "its port"
@@ -124,6 +134,8 @@ def _meet(port: int, open_session: Callable[[bool], zenoh.Session], within: Reac
         if _linked(session):
             return Joined(session, claim_of(claim, port, open_session, within))
         lifetime.finish(functools.partial(declare.close_session, session), CLOSE_WITHIN)
+    from robolink.networks import refusals
+
     raise TransportError(refusals.of_holder(port, secured=within.secured))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import time
 from collections.abc import Callable, Mapping
@@ -24,7 +23,7 @@ from robolink.system import clocks
 from robolink.system.files import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
-from robolink.transport.reach import mode_of
+from robolink.transport.reach import as_json, mode_of
 
 if TYPE_CHECKING:
     import zenoh
@@ -77,7 +76,7 @@ class Plan(NamedTuple):
         shares = shared_memory.decision(self.environ, mode=mode_of(config))
         named = any(SHARES_MEMORY.startswith(path) for path, _ in given)
         if not named and (shares.forced or not shares.on):  # else as it is: a file may have it off
-            config.insert_json5(SHARES_MEMORY, json.dumps(shares.on))
+            config.insert_json5(SHARES_MEMORY, as_json(shares.on))
         if self.secure is not None:  # the very last: no override opens what it closes
             self.secure(config)
         return config
@@ -206,7 +205,7 @@ def _config(found_settings: dict[str, Any]) -> zenoh.Config:
     import zenoh
 
     transport = found_settings["transport"] | {"shared_memory": _SHARED_MEMORY}
-    config: zenoh.Config = zenoh.Config.from_json5(json.dumps(found_settings | {"transport": transport}))
+    config: zenoh.Config = zenoh.Config.from_json5(as_json(found_settings | {"transport": transport}))
     return config
 
 

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import json
 import os
-import socket
 import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
@@ -20,7 +18,7 @@ from robolink.constants import LAST_DOMAIN
 from robolink.exceptions import TransportError
 from robolink.networks.request import FIRST_PORT
 from robolink.system import clocks
-from robolink.transport.reach import address_of, host_of, mode_of, port_of, read
+from robolink.transport.reach import address_of, as_json, host_of, mode_of, port_of, read
 
 if TYPE_CHECKING:
     import zenoh
@@ -45,6 +43,8 @@ def fixed_listeners(config: zenoh.Config) -> list[str]:
 
 def is_taken(endpoint: str) -> bool:
     """True if somebody listens at an endpoint of this machine already."""
+    import socket  # late: it takes a node's start 3 ms, and none looks at a port
+
     try:
         found = socket.getaddrinfo(host_of(endpoint), port_of(endpoint), type=socket.SOCK_STREAM)
     except (OSError, UnicodeError):
@@ -74,8 +74,8 @@ def step_aside(config: zenoh.Config, taken: Collection[str], retry: str) -> list
     free = [free for each in listed for free in (_instead(each) if each in taken else [each])]
     holders = [_from_here(each) for each in taken]
     sought = [*(f"{each}#{retry}" for each in holders), *(read(config, "connect/endpoints") or ())]
-    config.insert_json5("listen/endpoints", json.dumps(list(dict.fromkeys(free))))
-    config.insert_json5("connect/endpoints", json.dumps(sought))
+    config.insert_json5("listen/endpoints", as_json(list(dict.fromkeys(free))))
+    config.insert_json5("connect/endpoints", as_json(sought))
     return holders
 
 
@@ -146,6 +146,7 @@ def free_domain(domains: range = range(1, LAST_DOMAIN + 1)) -> Iterator[int]:
     A UDP socket with the number of its port is the lock, so that tests which run side by side take different ones.
     """
     import random  # late: only tests and benchmarks look for a domain
+    import socket
 
     for domain in random.sample(domains, len(domains)):
         with socket.socket(type=socket.SOCK_DGRAM) as mark:

@@ -5,15 +5,14 @@ rmw_zenoh has nothing for it: an assertion of one of its publishers does not lea
 
 from __future__ import annotations
 
-import re
-
 from robolink.exceptions import WireError
+from robolink.system.patterns import late
 from robolink.wire.keys import checked_topic, format_number, matched, not_too_long, quoted
 
 # Not with an @, which ** does not match: sessions that are confined to loopback let through what ** matches.
 _ALIVE = "robolink_alive"
 _FIELDS = 5
-_GID = re.compile(r"[0-9a-f]{32}")
+_GID = late(r"[0-9a-f]{32}")
 
 
 def format_assertion(domain: int, topic: str, gid: bytes, number: int) -> str:

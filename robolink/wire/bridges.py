@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 from robolink.exceptions import WireError
+from robolink.system.patterns import late
 from robolink.wire.keys import format_number, matched, not_too_long, parse_number, quoted
 
 # Not with an @, which ** does not match: sessions that are confined to loopback let through what ** matches.
 _BRIDGE = "robolink_bridge"
 _FIELDS = 7
-_SESSION = re.compile(r"[0-9a-f]{1,32}")
-_WORD = re.compile(r"[A-Za-z0-9_.-]{1,253}")
-_OTHER = re.compile(r"[^A-Za-z0-9_.-]+")
+_SESSION = late(r"[0-9a-f]{1,32}")
+_WORD = late(r"[A-Za-z0-9_.-]{1,253}")
+_OTHER = late(r"[^A-Za-z0-9_.-]+")
 
 STARTING, RUNNING = "starting", "running"
 """States of a bridge: whether it still looks for another one, or mirrors."""
@@ -58,7 +58,7 @@ def parse_bridge(text: str) -> BridgeToken:
     return BridgeToken(parse_number(domain), matched(_SESSION, session, "a session id"), network, host, state, mark)
 
 
-_MARK = re.compile(rb"robolink_bridge=([0-9a-f]{1,32}),([A-Za-z0-9_.-]{1,253});")
+_MARK = late(rb"robolink_bridge=([0-9a-f]{1,32}),([A-Za-z0-9_.-]{1,253});")
 
 
 class Mark(NamedTuple):

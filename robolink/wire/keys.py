@@ -7,6 +7,7 @@ import re
 from typing import NamedTuple
 
 from robolink.exceptions import WireError
+from robolink.system.patterns import late
 
 LONGEST = 4096
 """Longest key or token, in characters; longer ones are refused unread. ROS 2's own names end at 255."""
@@ -14,7 +15,7 @@ LONGEST = 4096
 remembered = functools.lru_cache(maxsize=1024)
 """LRU cache for parts of tokens: each endpoint of a node repeats the node's name, and each node the same types."""
 
-_NUMBER = re.compile(r"0|[1-9][0-9]{0,18}")
+_NUMBER = late(r"0|[1-9][0-9]{0,18}")
 
 NO_HASH = "TypeHashNotSupported"
 """Placeholder that Humble sends in place of a type hash."""
@@ -25,10 +26,10 @@ _BUFFERS = "/_buf_cpu"
 CHUNK = r"[A-Za-z0-9_.~-]+"
 """Regular expression of the part of a name between two slashes."""
 
-_TOPIC = re.compile(rf"(?:/{CHUNK})+")
-_TYPE = re.compile(r"[A-Za-z]\w*(?:/[A-Za-z]\w*)+", re.ASCII)
-_DDS_TYPE = re.compile(r"((?:[A-Za-z]\w*::)+)dds_::([A-Za-z]\w*)_", re.ASCII)
-_HASH = re.compile(rf"RIHS\d\d_[0-9a-f]{{64}}|{NO_HASH}", re.ASCII)
+_TOPIC = late(rf"(?:/{CHUNK})+")
+_TYPE = late(r"[A-Za-z]\w*(?:/[A-Za-z]\w*)+", re.ASCII)
+_DDS_TYPE = late(r"((?:[A-Za-z]\w*::)+)dds_::([A-Za-z]\w*)_", re.ASCII)
+_HASH = late(rf"RIHS\d\d_[0-9a-f]{{64}}|{NO_HASH}", re.ASCII)
 
 
 class DataKey(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 import sys
 from enum import Enum, IntEnum
 from typing import Any, NamedTuple, TypeVar
@@ -20,6 +19,7 @@ from robolink.qos import (
     qos_profile_system_default,
     resolved,
 )
+from robolink.system.patterns import late
 from robolink.text.names import join
 from robolink.wire.keys import (
     CHUNK,
@@ -38,11 +38,11 @@ from robolink.wire.keys import (
 )
 
 _GRAPH = "@ros2_lv"
-_NAME = re.compile(rf"/?{CHUNK}(?:/{CHUNK})*|/")
-_SESSION = re.compile(r"[0-9a-f]{1,32}")
+_NAME = late(rf"/?{CHUNK}(?:/{CHUNK})*|/")
+_SESSION = late(r"[0-9a-f]{1,32}")
 _FIELD = r"[^/*$?#]+"
-_ID = re.compile(_FIELD)
-_MORE = re.compile(rf"{_FIELD}(?:/{_FIELD})*")
+_ID = late(_FIELD)
+_MORE = late(rf"{_FIELD}(?:/{_FIELD})*")
 _NODE, _NODE_FIELDS, _ENDPOINT_FIELDS = "NN", 9, 13
 
 _BACKENDS = "backends:"

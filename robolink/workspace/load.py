@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import builtins
 import importlib.util
-import inspect
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from msgspec.structs import replace
 
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.system.files import LONGEST_SOURCE, read_plain
@@ -383,6 +383,8 @@ def make_node(node_class: Callable[[], Node]) -> Node:
 
 def check_needs_nothing(found: Callable[[], Any]) -> None:
     """Raise NodeLoadError for a class or function that needs arguments: nobody is there to give them."""
+    import inspect  # late: it takes 5 ms
+
     try:
         needed = [
             each.name

@@ -17,14 +17,15 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.extensions import ExtensionError, Registry, module_path
+from robolink.system.patterns import late
 from robolink.workspace.installed import installed_executables
 from robolink.workspace.packages import compiled_executables, executable, executables, named, named_executables
 from robolink.workspace.ros_programs import CompiledProgramError, ros_program_error
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 
 ROOMS = ("cli", "counterparts")
 """Rooms of robolink whose folders may have a file `entry_points.txt`."""
-_WORDS = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+_WORDS = late(r"(?<=[a-z0-9])(?=[A-Z])")
 MOST_NAMED = 10
 """Most executables that an error lists."""
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from robolink.system.patterns import late
 from robolink.system.terminal import fit
 
 _HEAD = 4096
 """Bytes at a file's beginning that are searched."""
 _LONGEST = 100
-_DESCRIPTION = re.compile(r"^description: +(?![>|&*!])['\"]?(.+?)['\"]?\s*$", re.MULTILINE)
-_COMMENT = re.compile(r"\A(?:(?:#[ \t]*yaml-language-server:.*|---.*|%.*|[ \t]*)\n)*((?:#[ \t]?\S.*(?:\n|\Z))+)")
-_FIRST_SENTENCE = re.compile(r".+?(?=[.;:]*(?:[.;]\s|\Z))", re.DOTALL)
+_DESCRIPTION = late(r"^description: +(?![>|&*!])['\"]?(.+?)['\"]?\s*$", re.MULTILINE)
+_COMMENT = late(r"\A(?:(?:#[ \t]*yaml-language-server:.*|---.*|%.*|[ \t]*)\n)*((?:#[ \t]?\S.*(?:\n|\Z))+)")
+_FIRST_SENTENCE = late(r".+?(?=[.;:]*(?:[.;]\s|\Z))", re.DOTALL)
 
 
 def purpose_of(path: Path) -> str:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from robolink.system.files import decoded, read_plain
+from robolink.system.patterns import late
 
 DEEPEST = 20
 """Upper bound of expressions within expressions, and of names that stand for names."""
@@ -146,10 +147,10 @@ LONGEST = 200_000
 MOST_SCRIPTS = 1000
 """Upper bound of a package's programs."""
 
-_NAME = re.compile(r"<name>\s*([A-Za-z0-9][\w-]*)\s*</name>")
-_ENTRY = re.compile(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*)\s*)?(?:\[[^\]]*\]\s*)?")
-_TOML_TABLE = re.compile(r"^\[(.+?)\][ \t]*(?:#.*)?$", re.MULTILINE)
-_TOML_ENTRY = re.compile(r"""^[ \t]*["']?([\w.-]+)["']?\s*=\s*["']([^"'\n]*)["']""", re.MULTILINE)
+_NAME = late(r"<name>\s*([A-Za-z0-9][\w-]*)\s*</name>")
+_ENTRY = late(r"\s*([\w.-]+)\s*=\s*([A-Za-z_][\w.]*)\s*(?::\s*([A-Za-z_][\w.]*)\s*)?(?:\[[^\]]*\]\s*)?")
+_TOML_TABLE = late(r"^\[(.+?)\][ \t]*(?:#.*)?$", re.MULTILINE)
+_TOML_ENTRY = late(r"""^[ \t]*["']?([\w.-]+)["']?\s*=\s*["']([^"'\n]*)["']""", re.MULTILINE)
 
 
 def package_name(folder: Path) -> str:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
+
+import msgspec
 
 Folder: TypeAlias = "str | os.PathLike[str] | None"
 
 
-@dataclass(frozen=True)
-class NodeSource:
+class NodeSource(msgspec.Struct, frozen=True):
     """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node).
 
     A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours. A file
