@@ -20,7 +20,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.peers import Array  # noqa: E402 - found only now
+from benchmarks.lidars import Array  # noqa: E402 - found only now
 from robolink.sim import Pose, World, WorldDescription  # noqa: E402
 from robolink.sim.description import Drive, RobotDescription, Wall  # noqa: E402
 from robolink.sim.sensing.lidar import Beams, distances  # noqa: E402

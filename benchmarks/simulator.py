@@ -25,7 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from benchmarks import exactness
-from benchmarks.peers import PEERS, Place, Scan, installed, irsim_world
+from benchmarks.lidars import PEERS, Place, Scan, installed, irsim_world
 from benchmarks.worlds import maze, room
 from robolink import Context, Node, VirtualTime, logging
 from robolink.executors import SingleThreadedExecutor
