@@ -12,7 +12,7 @@ PARALLEL ?= -n 4 --dist loadfile --no-loadscope-reorder
 # Compiled modules are kept, whatever the environment says: tests start robolink a few hundred times.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: help demo test docs fast lowest check lint types floors coverage format pages bench hooks node clean
+.PHONY: help demo test record docs fast lowest check lint types floors coverage format pages bench hooks node clean
 
 help:  ## This list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | awk -F'\t' '{printf "make %-9s %s\n", $$1, $$2}'
@@ -70,6 +70,9 @@ lowest:  ## The fast tests with the lowest versions that pyproject.toml allows
 	$(VENV)-lowest/bin/python -m pip install --quiet "pip>=25.1"
 	$(VENV)-lowest/bin/python -m pip install --quiet --constraint $(VENV)-lowest/lowest.txt --editable . --group dev
 	$(VENV)-lowest/bin/python -m pytest -W ignore::DeprecationWarning -n 4 --dist worksteal -m "not processes and not slow" --hypothesis-profile quick $(ARGS)
+
+record: $(READY)  ## The benchmark of record beside all peers, which it installs: writes the tables of README and docs
+	$(BIN)/python benchmarks/peers.py --install
 
 bench: $(READY)  ## Speed beside peers, in one run each
 	$(BIN)/python benchmarks/messaging.py --all --rounds 3 --seconds 0.3

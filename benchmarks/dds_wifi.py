@@ -3,7 +3,7 @@
     python benchmarks/dds_wifi.py REAL                              # all contenders at 1 % and 3 % loss: half an hour
     python benchmarks/dds_wifi.py REAL --loss 1 --with real,bridge --only twist,scan --rounds 3
 
-REAL is a Python with rclpy and Fast DDS, as in benchmarks/beside_rclpy.py, also with ros-sensor-msgs and ros-std-srvs.
+REAL is a Python with rclpy and Fast DDS, as benchmarks/peers.py --install installs one.
 The network is tests/support/wireless.py: two network namespaces, 3 ms +- 2 ms, 30 Mbit/s each way, frames lost
 evenly. Only inside of them do real nodes have their default range, SUBNET. Linux, root.
 

@@ -40,18 +40,17 @@ from benchmarks.messages.running import Contender, Flood, GameError, flood, insi
 BARE = Contender("bare", "bare")
 SAME = Contender("same", "bare", "same")
 HANDED = Contender("handed", "bare", "handed")
-SPIN = Contender("spin", "ours", "spin")
-ONCE = Contender("once", "ours", "once")
-THREADS = Contender("threads", "ours", "threads")
-LOOP = Contender("loop", "ours", "loop")
+SPIN = Contender("spin", "nodes", "spin")
+ONCE = Contender("once", "nodes", "once")
+THREADS = Contender("threads", "nodes", "threads")
+LOOP = Contender("loop", "nodes", "loop")
 VARIANTS = (
     Contender("echo", "bare", "echo"),
     Contender("bare-", "bare", shared_memory=False),
-    Contender("spin-", "ours", "spin", shared_memory=False),
+    Contender("spin-", "nodes", "spin", shared_memory=False),
 )
 PEERS = (
     Contender("sdk", "ros2_sdk", needs="zenoh_ros2_sdk"),
-    Contender("cyclone", "cyclone", needs="cyclonedds"),
     Contender("zeromq", "zeromq", needs="zmq"),
 )
 
@@ -65,9 +64,9 @@ CALLS = (
     Contender("call", "calls", "call"),
 )
 INSIDE = (
-    Contender("copy", "ours"),
-    Contender("memory", "ours", "memory"),
-    Contender("zenoh", "ours", "zenoh"),
+    Contender("copy", "nodes"),
+    Contender("memory", "nodes", "memory"),
+    Contender("zenoh", "nodes", "zenoh"),
 )
 """In one process: a copy of the bytes alone, and a message by each transport."""
 
@@ -83,7 +82,7 @@ def contenders(row: str, asked: argparse.Namespace) -> list[Contender]:
     if asked.names:
         known = {each.name: each for each in (BARE, SAME, HANDED, SPIN, ONCE, THREADS, LOOP, *VARIANTS, *PEERS)}
         found = [known[name] for name in asked.names]
-    return found + beside([each for each in found if each.module == "ours"], asked)
+    return found + beside([each for each in found if each.module == "nodes"], asked)
 
 
 def beside(players: Sequence[Contender], asked: argparse.Namespace) -> list[Contender]:
@@ -177,7 +176,7 @@ def show_codec(_: str, asked: argparse.Namespace) -> dict[str, Any]:
 
 def conditions() -> str:
     """Use of shared memory by Zenoh, on which the speed of large messages depends, and why it is used or not."""
-    enabled = json.loads(running.bare_config(True, True))["transport"]["shared_memory"]["enabled"]
+    enabled = json.loads(running.prepared()["first"])["transport"]["shared_memory"]["enabled"]
     with contextlib.suppress(ImportError):  # a robolink that leaves it to Zenoh
         from robolink.transport import shared_memory
 

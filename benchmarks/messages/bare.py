@@ -12,15 +12,16 @@ from __future__ import annotations
 import functools
 import os
 import queue
+import struct
 import time
 from collections.abc import Callable
 from typing import Any
 
 import zenoh
 
-from benchmarks.messages.games import Count, Ping, Task, pour, say_ready, wait_for_the_end
-
-CONFIG = "ROBOLINK_BENCH_CONFIG"
+from benchmarks.messages.games import Beat, Count, Ping, Task, pour, say_ready, wait_for_the_end
+from benchmarks.messages.running import CONFIG
+from benchmarks.messages.samples import position
 
 
 def opened() -> Any:
@@ -108,16 +109,9 @@ def ping(task: Task) -> None:
 
 def sink(task: Task) -> None:
     session, count = opened(), Count()
-
-    def on_sample(got: Any) -> None:
-        got.payload.to_bytes()
-        # `Count.add` written out: of this peer nothing is measured but the least
-        count.last = time.perf_counter()
-        count.count += 1
-        if not count.first:
-            count.first = count.last
-
-    _keep = session.declare_subscriber("bench/flood", on_sample)
+    form, place = position(task.kind)
+    number, add = functools.partial(struct.Struct(form).unpack_from, offset=place), count.add
+    _keep = session.declare_subscriber("bench/flood", lambda got: add(number(got.payload.to_bytes())[0]))
     count.answer()
     say_ready()
     time.sleep(task.seconds + 60)
@@ -127,12 +121,24 @@ def source(task: Task) -> None:
     session = opened()
     out = publisher(session, "bench/flood")
     put, buffer = out.put, content(task)
+    form, place = position(task.kind)
+    pack = struct.Struct(form).pack_into
+
+    def send(number: int) -> None:
+        pack(buffer, place, number)
+        put(bytes(buffer))
+
     wait_for_match(out)
     time.sleep(0.2)
-    if task.large and task.variant != "same":
-        pour(task, lambda each: put(bytes(each)), buffer)
-    else:
-        pour(task, put, bytes(buffer))
+    pour(task, send)
+
+
+def beat(task: Task) -> None:
+    session = opened()
+    out = publisher(session, "bench/flood")
+    wait_for_match(out)
+    message = bytes(content(task))
+    Beat(task, lambda: out.put(message)).keep()
 
 
 def wait_for_match(out: Any) -> None:

@@ -5,6 +5,7 @@ Variants: `querier` is bare Zenoh, `future` is `call_async` and `spin_until_futu
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 from benchmarks.messages.games import Ping, Task, say_ready, wait_for_the_end
@@ -21,14 +22,12 @@ def pong(task: Task) -> None:
     if task.variant == "querier":
         answer_barely()
     else:
-        import robolink as rclpy
-        from benchmarks.messages.ours import started
-        from robolink.interfaces.std_srvs.srv import Trigger
+        from benchmarks.messages.nodes import run, started, trigger
 
         node = started("server")
-        node.create_service(Trigger, "call", lambda _, response: response)
+        node.create_service(trigger(), "call", lambda _, response: response)
         say_ready()
-        rclpy.spin(node)
+        run(node, task)
 
 
 def ping(task: Task) -> None:
@@ -77,17 +76,16 @@ def asker_of_zenoh() -> Any:
 
 
 def asker(variant: str) -> Any:
-    import robolink as rclpy
-    from benchmarks.messages.ours import started
-    from robolink.interfaces.std_srvs.srv import Trigger
+    from benchmarks.messages.nodes import started, trigger
 
+    spin_until_future_complete = importlib.import_module("rclpy").spin_until_future_complete
     node = started("client")
-    client, request = node.create_client(Trigger, "call"), Trigger.Request()
+    client, request = node.create_client(trigger(), "call"), trigger().Request()
     client.wait_for_service()
 
     def ask_by_future() -> object:
         future = client.call_async(request)
-        rclpy.spin_until_future_complete(node, future)
+        spin_until_future_complete(node, future)
         return future.result()
 
     return ask_by_future if variant == "future" else lambda: client.call(request)

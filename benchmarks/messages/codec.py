@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 
+import robolink.compat  # noqa: F401 - the samples are made of ROS 2's names
 from benchmarks.messages.plain import plain
 from benchmarks.messages.samples import message_type, sample
 from robolink.message import decoder, encode, encoder

@@ -103,37 +103,78 @@ class Ping:
 
 
 class Count:
-    """Counter of what arrived in a flood, and from when to when."""
+    """Counter of what arrived in a flood, from when to when, and of what was not as sent or not after the last."""
 
     def __init__(self) -> None:
-        self.count = 0
+        self.count = self.wrong = 0
         self.first = self.last = 0.0
+        self._number = 0
 
-    def add(self, _: object) -> None:
-        """Count a message."""
+    def add(self, number: int, intact: bool = True) -> None:
+        """Count a message by the number that its sender gave it; lost ones leave gaps."""
         self.last = time.perf_counter()
         self.count += 1
         if not self.first:
             self.first = self.last
+        if number <= self._number or not intact:
+            self.wrong += 1
+        self._number = number
 
     def answer(self) -> None:
         """Write the figures for each line from the process that measures, on another thread."""
 
         def answer() -> None:
             for _ in sys.stdin:
-                say([self.count, self.last - self.first])
+                self.say()
             os._exit(0)
 
         threading.Thread(target=answer, daemon=True).start()
 
+    def say(self) -> None:
+        """Write the figures."""
+        say([self.count, self.last - self.first, self.wrong])
 
-def pour(task: Task, send: Callable[[Any], object], message: object) -> None:
-    """Send a message for so long as fast as it goes, say how often that was, and stay until all has arrived."""
+
+class Beat:
+    """A hundred messages in a second: half a second to settle, then the share of a core that this process takes."""
+
+    PERIOD = 0.01
+    """Seconds from a beat to the next."""
+    SETTLE = 50
+    """Beats before the measurement."""
+
+    def __init__(self, task: Task, send: Callable[[], object]) -> None:
+        self._left, self._send = self.SETTLE + round(task.seconds / self.PERIOD), send
+        self._begin = (0.0, 0.0)
+        self._counted = self._left - self.SETTLE
+
+    def tick(self) -> None:
+        """Send; hand in the figure and leave after the last beat."""
+        self._send()
+        self._left -= 1
+        if self._left == self._counted:
+            self._begin = (time.perf_counter(), time.process_time())
+        if not self._left:
+            (wall, cpu), now = self._begin, (time.perf_counter(), time.process_time())
+            say((now[1] - cpu) / (now[0] - wall))
+            os._exit(0)
+
+    def keep(self) -> None:
+        """Tick by sleeping to each deadline, as a program without timers does."""
+        due = time.perf_counter()
+        while True:
+            self.tick()
+            due += self.PERIOD
+            time.sleep(max(0.0, due - time.perf_counter()))
+
+
+def pour(task: Task, send: Callable[[int], object]) -> None:
+    """Send numbers from 1 on for so long as fast as it goes, say how many, and stay until all has arrived."""
     batch, sent = (1 if task.large else 100), 0
     end = time.perf_counter() + task.seconds
     while time.perf_counter() < end:
-        for _ in range(batch):
-            send(message)
+        for number in range(sent + 1, sent + 1 + batch):
+            send(number)
         sent += batch
     say(sent)
     wait_for_the_end()

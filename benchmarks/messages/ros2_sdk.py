@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.messages.games import Count, Ping, Task, pour, say_ready
-from benchmarks.messages.samples import SIDES, pixels, ranges
+from benchmarks.messages.games import Beat, Count, Ping, Task, pour, say_ready
+from benchmarks.messages.samples import SIDES, SPIN, counting, pixels, ranges
 
 NAMES = {"twist": "geometry_msgs/msg/Twist", "stamped": "geometry_msgs/msg/TwistStamped"}
 NAMES |= {"scan": "sensor_msgs/msg/LaserScan", "1mb": "sensor_msgs/msg/Image", "6mb": "sensor_msgs/msg/Image"}
@@ -55,7 +55,7 @@ class Peer:
         session = zenoh_ros2_sdk.ZenohSession.get_instance(router_port=self._port)
         for name, text in DEFINITIONS.items():
             session.register_message_type(text, name)
-        self._types = session.store.types
+        self.session, self._types = session.session, session.store.types
 
     def publisher(self, topic: str) -> Any:
         return self._sdk.ROS2Publisher(topic, self._name, DEFINITIONS[self._name], router_port=self._port)
@@ -68,7 +68,7 @@ class Peer:
         types = self._types
         header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](0, 0), "frame")
         vector = types["geometry_msgs/msg/Vector3"]
-        twist = {"linear": vector(0.3, 0.0, 0.0), "angular": vector(0.0, 0.0, -0.5)}
+        twist = {"linear": vector(0.3, 0.0, 0.0), "angular": vector(0.0, 0.0, SPIN)}
         if kind == "twist":
             return twist
         if kind == "stamped":
@@ -112,7 +112,7 @@ def ping(task: Task) -> None:
 
 def sink(task: Task) -> None:
     peer, count = Peer(task, first=True), Count()
-    _keep = peer.subscribe("flood", count.add)
+    _keep = peer.subscribe("flood", counting(task.kind, count.add))
     count.answer()
     say_ready()
     time.sleep(task.seconds + 60)
@@ -120,10 +120,23 @@ def sink(task: Task) -> None:
 
 def source(task: Task) -> None:
     peer = Peer(task, first=False)
-    out = peer.publisher("flood")
+    out, fields = peer.publisher("flood"), peer.fields(task.kind)
+    of, name = (fields["linear"], "x") if task.kind == "twist" else (fields["header"].stamp, "nanosec")
+
+    def send(number: int) -> None:
+        setattr(of, name, number)
+        out.publish(**fields)
+
     wait_for_match(out)
     time.sleep(0.2)
-    pour(task, lambda fields: out.publish(**fields), peer.fields(task.kind))
+    pour(task, send)
+
+
+def beat(task: Task) -> None:
+    peer = Peer(task, first=False)
+    out, fields = peer.publisher("flood"), peer.fields(task.kind)
+    wait_for_match(out)
+    Beat(task, lambda: out.publish(**fields)).keep()
 
 
 def wait_for_match(out: Any) -> None:

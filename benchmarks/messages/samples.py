@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
 from array import array
+from collections.abc import Callable
 from typing import Any
+
+LAST_PIXEL = 0xA5
+"""Value of an image's last byte, by which a flood's images are checked."""
+SPIN = -0.5
+"""The field `angular.z` of each Twist, by which a flood's Twists are checked."""
 
 KINDS = ("twist", "stamped", "scan", "1mb", "6mb")
 """Names of the messages. `stamped` is a TwistStamped."""
@@ -15,9 +22,10 @@ BEAMS = 360
 
 
 def pixels(kind: str) -> bytes:
-    """The content of an image."""
+    """Return the content of an image."""
     width, height, channels, _ = SIDES[kind]
-    return (bytes(range(251)) * (width * height * channels // 251 + 1))[: width * height * channels]
+    size = width * height * channels
+    return (bytes(range(251)) * (size // 251 + 1))[: size - 1] + bytes([LAST_PIXEL])
 
 
 def ranges() -> list[float]:
@@ -26,15 +34,15 @@ def ranges() -> list[float]:
 
 
 def message_type(kind: str) -> Any:
-    """The class of a message, in robolink."""
-    from robolink.interfaces.geometry_msgs.msg import Twist, TwistStamped
-    from robolink.interfaces.sensor_msgs.msg import Image, LaserScan
-
-    return {"twist": Twist, "stamped": TwistStamped, "scan": LaserScan}.get(kind, Image)
+    """Return the class of a message, of the ROS 2 that is there: robolink's, or a real one."""
+    package, name = {"twist": ("geometry", "Twist"), "stamped": ("geometry", "TwistStamped")}.get(
+        kind, ("sensor", "LaserScan" if kind == "scan" else "Image")
+    )
+    return getattr(importlib.import_module(f"{package}_msgs.msg"), name)
 
 
 def sample(kind: str) -> Any:
-    """A message of this kind, in robolink."""
+    """Return a message of this kind."""
     message = message_type(kind)()
     if kind in SIDES:
         message.width, message.height, channels, message.encoding = SIDES[kind]
@@ -45,5 +53,24 @@ def sample(kind: str) -> Any:
         message.header.frame_id = "laser"
     else:
         twist = message.twist if kind == "stamped" else message
-        twist.linear.x, twist.angular.z = 0.3, -0.5
+        twist.linear.x, twist.angular.z = 0.3, SPIN
     return message
+
+
+def position(kind: str) -> tuple[str, int]:
+    """Return where a flood's number is in the message's CDR: the format of `struct`, and the first byte.
+
+    A Twist's number is its `linear.x`, another's is `header.stamp.nanosec`; four bytes of CDR's header are before it.
+    """
+    return ("<d", 4) if kind == "twist" else ("<I", 8)
+
+
+def counting(kind: str, add: Callable[[int, bool], object]) -> Callable[[Any], object]:
+    """Return a callback that hands on a message's number in a flood, and whether its content is what was sent."""
+    if kind == "twist":
+        return lambda message: add(message.linear.x, message.angular.z == SPIN)
+    if kind == "stamped":
+        return lambda message: add(message.header.stamp.nanosec, message.twist.angular.z == SPIN)
+    if kind == "scan":
+        return lambda message: add(message.header.stamp.nanosec, len(message.ranges) == BEAMS)
+    return lambda message: add(message.header.stamp.nanosec, message.data[-1] == LAST_PIXEL)

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from benchmarks.messages.games import Count, Ping, Task, pour, say_ready
+from benchmarks.messages.games import Beat, Count, Ping, Task, pour, say_ready
 from benchmarks.messages.plain import plain
 
 zmq: Any = importlib.import_module("zmq")
@@ -56,16 +56,34 @@ def ping(task: Task) -> None:
         receive()
 
 
+def number_of(kind: str) -> tuple[str, str]:
+    """Return the names by which a flood's number is found in a message."""
+    return ("linear", "x") if kind == "twist" else ("header", "nanosec")
+
+
 def sink(task: Task) -> None:
     socket, count = paired(task, first=True), Count()
     unpack = msgspec.msgpack.Decoder(type(plain(task.kind))).decode
+    part, name = number_of(task.kind)
     count.answer()
     say_ready()
     while True:
-        count.add(unpack(socket.recv(copy=not task.large)))
+        count.add(getattr(getattr(unpack(socket.recv(copy=not task.large)), part), name))
 
 
 def source(task: Task) -> None:
-    socket, pack = paired(task, first=False), msgspec.msgpack.Encoder().encode
+    socket, pack, message = paired(task, first=False), msgspec.msgpack.Encoder().encode, plain(task.kind)
+    part, name = number_of(task.kind)
+    of = getattr(message, part)
+
+    def send(number: int) -> None:
+        setattr(of, name, number)
+        socket.send(pack(message), copy=not task.large)
+
     time.sleep(0.2)
-    pour(task, lambda message: socket.send(pack(message), copy=not task.large), plain(task.kind))
+    pour(task, send)
+
+
+def beat(task: Task) -> None:
+    socket, pack, message = paired(task, first=False), msgspec.msgpack.Encoder().encode, plain(task.kind)
+    Beat(task, lambda: socket.send(pack(message))).keep()

@@ -1,22 +1,26 @@
-"""robolink's nodes, by rclpy's API alone, so that they run with any version of it.
+"""Nodes by rclpy's API alone: those of any version of robolink, and those of a real rclpy, where that is installed.
 
 Variants: `spin` is `rclpy.spin(node)`, `once` is `rclpy.spin_once(node)` in a loop, `threads` is a
 MultiThreadedExecutor; each at both ends. In `loop` the first end sends between two calls of `spin_once`, as most
-programs do, instead of in its callback.
+programs do, instead of in its callback. Of floods: `depth-10` and so on; else KEEP_ALL, and a depth of 10 for images.
 """
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
 import time
 from typing import Any
 
-import robolink as rclpy
-from benchmarks.messages.games import Count, Ping, Task, pour, say, say_ready
-from benchmarks.messages.samples import message_type, sample
-from robolink.context import Context
-from robolink.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from robolink.qos import HistoryPolicy, QoSProfile
+with contextlib.suppress(ImportError):  # a Python with a real rclpy has no robolink
+    import robolink.compat  # noqa: F401
+from benchmarks.messages.games import Beat, Count, Ping, Task, pour, say, say_ready
+from benchmarks.messages.samples import counting, message_type, sample
+
+rclpy: Any = importlib.import_module("rclpy")
+executors: Any = importlib.import_module("rclpy.executors")
+qos: Any = importlib.import_module("rclpy.qos")
 
 STORED = 10
 """Depth of the queues of large messages, as a camera's would be; of small ones all are kept."""
@@ -27,13 +31,17 @@ def started(name: str) -> Any:
     return rclpy.create_node(name)
 
 
+def trigger() -> Any:
+    return importlib.import_module("std_srvs.srv").Trigger
+
+
 def run(node: Any, task: Task) -> None:
     """Spin for ever."""
     if task.variant in ("once", "loop"):
         while True:
             rclpy.spin_once(node)
     if task.variant == "threads":
-        executor = MultiThreadedExecutor(num_threads=2)
+        executor = executors.MultiThreadedExecutor(num_threads=2)
         executor.add_node(node)
         executor.spin()
     rclpy.spin(node)
@@ -82,19 +90,15 @@ def look(image: Any) -> int:
     return int(image.data[-1])
 
 
-def flood_qos(task: Task) -> QoSProfile:
-    return QoSProfile(depth=STORED) if task.large else QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL)
+def flood_qos(task: Task) -> Any:
+    if task.variant.startswith("depth-"):
+        return qos.QoSProfile(depth=int(task.variant.removeprefix("depth-")))
+    return qos.QoSProfile(depth=STORED) if task.large else qos.QoSProfile(depth=1, history=qos.HistoryPolicy.KEEP_ALL)
 
 
 def sink(task: Task) -> None:
     node, count = started("sink"), Count()
-
-    def on_image(image: Any) -> None:
-        look(image)
-        count.add(image)
-
-    callback = on_image if task.large else count.add
-    node.create_subscription(message_type(task.kind), "flood", callback, flood_qos(task))
+    node.create_subscription(message_type(task.kind), "flood", counting(task.kind, count.add), flood_qos(task))
     count.answer()
     say_ready()
     run(node, task)
@@ -103,9 +107,46 @@ def sink(task: Task) -> None:
 def source(task: Task) -> None:
     node, message = started("source"), sample(task.kind)
     out = node.create_publisher(type(message), "flood", flood_qos(task))
+    publish, stamp = out.publish, None if task.kind == "twist" else message.header.stamp
+
+    def send(number: int) -> None:
+        if stamp is None:
+            message.linear.x = float(number)
+        else:
+            stamp.nanosec = number
+        publish(message)
+
     wait_for_match(out)
     time.sleep(0.2)
-    pour(task, out.publish, message)
+    pour(task, send)
+
+
+def beat(task: Task) -> None:
+    """Publish from a timer, to a sink."""
+    node, message = started("beat"), sample(task.kind)
+    out = node.create_publisher(type(message), "flood", flood_qos(task))
+    wait_for_match(out)
+    beats = Beat(task, lambda: out.publish(message))
+    node.create_timer(Beat.PERIOD, beats.tick)
+    rclpy.spin(node)
+
+
+def crowd(task: Task) -> None:
+    """Make some nodes in one process, and say when the first of them knows so many; `variant` is `NUMBER-EACH-ALL`."""
+    number, each, everybody = (int(word) for word in task.variant.split("-"))
+    rclpy.init(args=[], domain_id=int(os.environ["ROS_DOMAIN_ID"]))
+    executor = executors.SingleThreadedExecutor()
+    nodes = [rclpy.create_node(f"node_{number}_{index}") for index in range(each)]
+    for node in nodes:
+        node.create_publisher(message_type("twist"), f"{node.get_name()}/out", 10)
+        node.create_subscription(message_type("twist"), f"{node.get_name()}/in", look, 10)
+        executor.add_node(node)
+    due = time.monotonic()
+    while len(nodes[0].get_node_names()) < everybody:
+        due = max(due + 0.1, time.monotonic())
+        executor.spin_once(timeout_sec=max(due - time.monotonic(), 0.0))
+    say(time.monotonic())
+    executor.spin()
 
 
 def wait_for_match(out: Any) -> None:
@@ -115,7 +156,8 @@ def wait_for_match(out: Any) -> None:
 
 def inside(task: Task) -> None:
     """Publisher and subscription in one process: times up to the pixels in the callback. `variant` is the transport."""
-    context = Context(transport="memory://bench") if task.variant == "memory" else Context()
+    make = importlib.import_module("rclpy.context").Context
+    context = make(transport="memory://bench") if task.variant == "memory" else make()
     context.init(args=[], domain_id=int(os.environ["ROS_DOMAIN_ID"]))
     node, message = rclpy.create_node("both", context=context), sample(task.kind)
     out = node.create_publisher(type(message), "inside", 10)
@@ -139,7 +181,7 @@ def inside(task: Task) -> None:
         out.publish(message)
 
     node.create_subscription(type(message), "inside", on_message, 10)
-    executor = SingleThreadedExecutor(context=context)
+    executor = executors.SingleThreadedExecutor(context=context)
     executor.add_node(node)
     publish_again()
     executor.spin()
