@@ -28,6 +28,9 @@ _Delays = Callable[[tuple[int, ...]], tuple[int, ...]]
 AT_ONCE: tuple[int, ...] = (0,)
 """Delays in ns of a message that no fault touches: one copy, at once."""
 
+TWICE: tuple[int, ...] = (0, 0)
+"""Delays in ns of a message that comes twice, at once."""
+
 
 class LinkFault:
     """One fault on one link: from a program to another, on one topic or service."""
@@ -42,6 +45,7 @@ class LinkFault:
         "begin",
         "delays",
         "end",
+        "plain",
         "reorders",
         "report",
     )
@@ -60,8 +64,10 @@ class LinkFault:
         self._in_burst = None if fault.burst is None else _bursts(fault.loss, fault.burst, draws("loss"))
         self._double = _Chance(fault.duplication, draws("duplication"))
         is_plain = not (self._latency or spread or self._in_burst)
+        self.plain: _Plain | None = (report, *self._loss, *self._double) if is_plain else None
+        """What a fault is made of that only loses and doubles; None for others."""
         self.delays: Callable[[tuple[int, ...]], tuple[int, ...]] = (
-            _plain_delays(self._loss, self._double, report) if is_plain else self._delays
+            self._delays if self.plain is None else _plain_delays(self.plain)
         )
         """Applies the fault to a message: takes the delays in ns of its copies so far, and returns the new ones."""
 
@@ -101,10 +107,13 @@ class _Chance(NamedTuple):
         return self.share > 0.0 and self.draw() < self.share
 
 
-def _plain_delays(loss: _Chance, double: _Chance, report: FaultReport) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
-    """Return `LinkFault.delays` of a fault that only loses and doubles: a closure, for every message comes here."""
-    loss_share, draw_loss = loss
-    double_share, draw_double = double
+_Plain = tuple[FaultReport, float, Callable[[], float], float, Callable[[], float]]
+"""A fault that only loses and doubles: its report, the share of losses and their source of numbers, that of doubles."""
+
+
+def _plain_delays(plain: _Plain) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
+    """Return `LinkFault.delays` of a fault that only loses and doubles: a closure, for many messages come here."""
+    report, loss_share, draw_loss, double_share, draw_double = plain
 
     def delays(before: tuple[int, ...]) -> tuple[int, ...]:
         report.met += 1
@@ -146,14 +155,14 @@ class Link:
         subscriptions to a topic is sent a message once: all of them get it, or none does.
         """
 
-    def active_at(self, now: int) -> tuple[int, list[_Delays], list[FaultReport]]:
+    def active_at(self, now: int) -> tuple[int, list[LinkFault], list[FaultReport]]:
         """Return until when the same faults are active as now, these faults, and the partitions that cut it off."""
         active = [each for each in self._faults if each.begin <= now < each.end]
         self._reorders = any(each.reorders for each in active)
         cuts = [report for (begin, end), report in self._partitions if begin <= now < end]
         windows = [*((each.begin, each.end) for each in self._faults), *(when for when, _ in self._partitions)]
         until = min((each for when in windows for each in when if each > now), default=NEVER)
-        return until, [each.delays for each in active], cuts
+        return until, active, cuts
 
     def in_turn(self, times: tuple[int, ...]) -> tuple[int, ...]:
         """Keep the order of what is still under way, unless reordering is wanted."""
@@ -167,24 +176,36 @@ class Link:
 def _arrivals(link: Link) -> Callable[[object, int], tuple[int, ...] | None]:
     """Return `Link.arrivals`: a closure, for every message comes here."""
     until = -NEVER
-    active: list[_Delays] = []
+    active: list[LinkFault] = []
     cuts: list[FaultReport] = []
+    alone: _Plain | None = None
     last_message: object = None
     last_time = -1
     last: tuple[int, ...] | None = None
 
     def arrivals(message: object, now: int) -> tuple[int, ...] | None:
-        nonlocal until, active, cuts, last_message, last_time, last
+        nonlocal until, active, cuts, alone, last_message, last_time, last
         if message is last_message and now == last_time:
             return last
         if now >= until:
             until, active, cuts = link.active_at(now)
-        delays = AT_ONCE
-        for apply in active:
-            delays = apply(delays)
-        if cuts:
-            delays = _cut_off(delays, cuts)
+            alone = active[0].plain if len(active) == 1 and not cuts else None
         last_message, last_time = message, now
+        if alone is None:
+            delays = _delays_by(active, cuts)
+        else:  # as usual: `_plain_delays` written out
+            report, loss_share, draw_loss, double_share, draw_double = alone
+            report.met += 1
+            lost = loss_share and draw_loss() < loss_share
+            doubled = double_share and draw_double() < double_share
+            if lost:
+                report.lost += 1
+                delays = ()
+            elif doubled:
+                report.doubled += 1
+                delays = TWICE
+            else:
+                delays = AT_ONCE
         if delays is AT_ONCE and link.pending_until <= now:
             last = None
         else:
@@ -192,6 +213,13 @@ def _arrivals(link: Link) -> Callable[[object, int], tuple[int, ...] | None]:
         return last
 
     return arrivals
+
+
+def _delays_by(active: list[LinkFault], cuts: list[FaultReport]) -> tuple[int, ...]:
+    delays = AT_ONCE
+    for each in active:
+        delays = each.delays(delays)
+    return _cut_off(delays, cuts) if cuts else delays
 
 
 def _cut_off(delays: tuple[int, ...], cuts: list[FaultReport]) -> tuple[int, ...]:

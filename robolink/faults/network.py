@@ -42,6 +42,9 @@ def uniform(seed: int, *names: str) -> Callable[[], float]:
 class Scheduler(Protocol):
     """Protocol of a scheduler on a time base: VirtualTime."""
 
+    _now: int
+    """The monotonic time in ns, for what is asked for each message."""
+
     def steady(self) -> int:
         """Return the monotonic time in ns."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from typing import Any
 
 from robolink.exceptions import WireError
@@ -12,6 +13,9 @@ from robolink.qos import QoSProfile
 from robolink.transport.base import Handle, Sink
 from robolink.transport.memory import MemoryTransport
 from robolink.wire import NodeToken, gid_in, gid_of, parse_token
+
+_Arrivals = Callable[[object, int], tuple[int, ...] | None]
+"""`Link.arrivals`."""
 
 
 class FaultyTransport(MemoryTransport):
@@ -111,20 +115,21 @@ class _SubscriptionInterceptor(_Interceptor):
 
     def _receiving(self) -> Sink:
         """Return the function that delivers a sample now, later, twice or never: a closure, for each comes here."""
-        links: dict[bytes, Link | None] = {}
-        time_now, sink = self._now, self.sink
+        links: dict[bytes, _Arrivals | None] = {}
+        clock, sink = self.network.time, self.sink
 
         def receive(arrived: tuple[bytes, bytes]) -> None:
             gid = gid_in(arrived[1])
             try:
-                link = links[gid]
+                arrivals = links[gid]
             except KeyError:
-                link = links[gid] = self.network.link(gid, self.program, self.name)
-            if link is None:
+                link = self.network.link(gid, self.program, self.name)
+                arrivals = links[gid] = None if link is None else link.arrivals
+            if arrivals is None:
                 sink(arrived)
                 return
-            now = time_now()
-            times = link.arrivals(arrived, now)
+            now = clock._now  # a call less than `steady()`
+            times = arrivals(arrived, now)
             if times is None:
                 sink(arrived)
                 return

@@ -39,6 +39,10 @@ class Timeline:
     def steady(self) -> int:
         return self.now
 
+    @property
+    def _now(self) -> int:
+        return self.now
+
     def at(self, time_ns: int, act: Callable[[], object]) -> None:
         heapq.heappush(self._acts, (time_ns, next(self._serial), act))
 
