@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import contextlib
+import gc
 import importlib
 import io
 import os
@@ -12,7 +13,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from robolink.cli.launching.hashing import begin_steadily
+from robolink.cli.launching.hashing import begin_steadily, is_simulation
 from robolink.cli.shared.output import complain
 from robolink.cli.shared.process import OTHER_NAMES, not_lost
 from robolink.documents.foreign import in_a_line
@@ -44,6 +45,8 @@ def main(args: Sequence[str] | None = None) -> int:
         try:
             if not os.environ.get(COMPLETION):
                 begin_steadily(given)
+                if is_simulation(given):
+                    gc.disable()  # there is nothing to collect while modules are imported; the command enables it
         except KeyboardInterrupt:
             return 130
         _open_closed_streams()

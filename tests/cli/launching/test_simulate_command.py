@@ -115,6 +115,19 @@ def test_two_processes_have_the_same_hash(folder: Path) -> None:
     assert hashes[0] == hashes[1]
 
 
+@pytest.mark.processes
+def test_garbage_is_collected_once_nodes_are_made(folder: Path) -> None:
+    (folder / "nodes" / "printer.py").write_text(
+        PRINTER.replace('"no line", end=""', "gc.isenabled()").replace(
+            "from robolink import Node", "import gc\n\nfrom robolink import Node"
+        )
+    )
+    (folder / "configs" / "prints.yaml").write_text("nodes:\n  - {node: printer}\n")
+    command = [sys.executable, "-m", "robolink", "simulate", "prints", "--duration", "0.1"]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert shown.splitlines()[0] == "True"
+
+
 def test_a_node_that_fails_is_told_and_the_exit_code_is_1(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "fails", "--duration", "3"]) == 1
     out, err = capsys.readouterr()
