@@ -172,9 +172,12 @@ class Clock:
         """The time in nanoseconds, for those who count."""
         return self._read()
 
-    def wait_ns(self, until: int) -> int | None:
-        """Return the nanoseconds of steady time until the time `until`; None if only /clock decides."""
-        return until - self.now_ns()
+    def wait_ns(self, until: int, now: int | None = None) -> int | None:
+        """Return the nanoseconds of steady time until the time `until`; None if only /clock decides.
+
+        `now` is the time that was read just before; None reads it.
+        """
+        return until - (self.now_ns() if now is None else now)
 
     def create_jump_callback(
         self,
@@ -293,12 +296,15 @@ class ROSClock(Clock):
 
     def now_ns(self) -> int:
         """The time in nanoseconds, for those who count."""
-        return self._override if self._active else self._read()
+        if self._active:
+            return self._override
+        read = self._read  # for Python 3.11 a function in an attribute, no method
+        return read()
 
-    def wait_ns(self, until: int) -> int | None:
+    def wait_ns(self, until: int, now: int | None = None) -> int | None:
         """Return the nanoseconds of steady time until the time `until`; None if only /clock decides."""
-        if not self._active:
-            return until - self.now_ns()  # one reading of the time for both, whatever overrides it
+        if not self._active:  # one reading of the time for both, whatever overrides it
+            return until - (self.now_ns() if now is None else now)
         left = until - self._override
         return None if left > 0 else left
 

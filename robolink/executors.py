@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -231,9 +231,8 @@ class Executor:
         try:
             outcome = entity.execute(taken)
             if outcome is not None and isinstance(outcome, CoroutineType):
-                coroutine = outcome  # its group is busy until it ends
-                task: Task[Any] = Task(coroutine, executor=self)
-                TaskRunner(task, self, entity).execute(task)
+                coroutine = outcome
+                self.run_coroutine(entity, coroutine)
         finally:
             if coroutine is None:
                 group = entity.gate
@@ -241,6 +240,11 @@ class Executor:
                     group._release_()
                 else:
                     group.ending_execution(entity)
+
+    def run_coroutine(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> None:
+        """Begin with the coroutine that the callback of `entity` has returned; its group is busy until it ends."""
+        task: Task[Any] = Task(coroutine, executor=self)
+        TaskRunner(task, self, entity).execute(task)
 
     _dispatch = run
     """Run what was taken: here and now, unless there are threads for it."""

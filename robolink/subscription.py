@@ -6,6 +6,7 @@ import contextlib
 import functools
 from collections.abc import Callable
 from enum import Enum
+from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
 from robolink.callback_groups import CallbackGroup
@@ -30,6 +31,7 @@ from robolink.running.entity import ANY_TIME, SUBSCRIPTION, Receiver
 from robolink.running.execution import takes_arguments
 from robolink.running.expectations import Deadline, Liveliness
 from robolink.running.inbox import Inbox
+from robolink.running.ready_queue import HELD, reserve
 from robolink.system.terminal import shown
 from robolink.text.callbacks import signature_of
 from robolink.transport.base import Handle, Sample
@@ -44,6 +46,10 @@ MsgT = TypeVar("MsgT", bound=Message)
 MsgType = TypeVar("MsgType")  # a name that programs import from here
 
 _LOST = {QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST}
+
+
+_REFUSED = (CopyError, DecodeError, OverwrittenError, TransportError, WireError)
+"""Errors of what arrives and cannot be opened."""
 
 
 class MessageInfo(TypedDict):
@@ -215,6 +221,34 @@ class Subscription(Receiver, Generic[MsgT]):
                 " (the next ones are only counted, in `Subscription.lost`)"
             )
 
+    def turn(self) -> Any:
+        """Take the oldest of what waits and execute it, as `Entity.turn` does, with the usual way written out."""
+        waiting, opened = self.mailbox.waiting, self._open
+        if len(waiting) != 1 or opened is None or self._with_info or self._backlog is not None:
+            return super().turn()
+        group = self.gate
+        acquire = group._acquire_
+        if not (acquire(False) if acquire else reserve(group, self)):
+            return HELD
+        self.mailbox.listed = False
+        outcome = None
+        try:
+            try:
+                message = opened(waiting.popleft())
+            except _REFUSED as error:
+                self._drop(error)
+                return None
+            callback = self._callback  # for Python 3.11 a function in an attribute, no method
+            outcome = callback(message)
+        finally:
+            if outcome is None or not isinstance(outcome, CoroutineType):
+                release = group._release_
+                if release:
+                    release()
+                else:
+                    group.ending_execution(self)
+        return outcome
+
     def execute(self, taken: Any) -> Any:
         """Decode what arrived and call the callback; what cannot be decoded is counted, and warned about once."""
         if self._backlog is not None and self._backlog.warnings:
@@ -225,17 +259,20 @@ class Subscription(Receiver, Generic[MsgT]):
                 message, info = opened(taken), None
             else:
                 message, info = self._open_with_info(taken)
-        except CopyError:
+        except _REFUSED as error:
+            self._drop(error)
             return None
-        except OverwrittenError as error:
+        callback = self._callback  # for Python 3.11 a function in an attribute, no method
+        return callback(message) if info is None else callback(message, info)
+
+    def _drop(self, error: Exception) -> None:
+        """Count what arrived and cannot be opened, and warn about the first; copies are expected."""
+        if isinstance(error, OverwrittenError):
             with contextlib.suppress(WireError):  # unknown, then
                 self._check(error.attachment)
             self.lose(get_logger(self.logger_name).warning)
-            return None
-        except (DecodeError, WireError, TransportError) as error:
+        elif not isinstance(error, CopyError):
             self._refuse(error)
-            return None
-        return self._callback(message) if info is None else self._callback(message, info)
 
     def _open_stored(self, stored: Sample) -> Any:
         """Return the message of what `_look_over` has read."""

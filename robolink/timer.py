@@ -88,6 +88,7 @@ class Timer(Entity):
         self._last = clock.now_ns()
         self.next_call_ns = self._last + self._period
         self._canceled = not autostart
+        self._destroyed = False  # in the instance, where Python 3.11 finds it in a tenth of the time
 
     @property
     def callback(self) -> Callable[..., Any] | None:
@@ -145,24 +146,29 @@ class Timer(Entity):
             self.reschedule()
             return NOTHING
         self._last, expected, period = now, self.next_call_ns, self._period
-        self.next_call_ns = expected + period * (1 + (now - expected) // period) if period else now
+        if now - expected < period:  # as usual, and half as long as a division
+            self.next_call_ns = expected + period
+        else:
+            self.next_call_ns = expected + period * (1 + (now - expected) // period) if period else now
         queue = self._queue_
         if queue is not None:
             self.version += 1
-            left = self.clock.wait_ns(self.next_call_ns)
+            left = self.clock.wait_ns(self.next_call_ns, now)
             if left is not None:
-                queue.schedule(self, left)
+                schedule = queue.schedule  # for Python 3.11 a function in an attribute, no method
+                schedule(self, left)
         return expected, now
 
     def execute(self, taken: Any) -> Any:
         """Call the callback."""
-        if self._callback is None:
+        callback = self._callback  # for Python 3.11 a function in an attribute, no method
+        if callback is None:
             raise TypeError(self._without_callback())
         if self._info_name is None:
-            return self._callback()
+            return callback()
         expected, actual = taken
         info = TimerInfo(expected_call_time=expected, actual_call_time=actual, clock_type=self.clock.clock_type)
-        return self._callback(**{self._info_name: info})
+        return callback(**{self._info_name: info})
 
     def _without_callback(self) -> str:
         called = call_instead_of_function(self.made_at) if self.made_at is not None else ""

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappush
+from types import CoroutineType
 from typing import TYPE_CHECKING, Any, cast
 
-from robolink.executors import SingleThreadedExecutor
+from robolink.executors import Executor, SingleThreadedExecutor
 from robolink.host.participants import CALLBACKS, HostedInbox, Job, ProgramLike, Runner
-from robolink.running.defaults import here
-from robolink.running.entity import Entity
+from robolink.running.entity import NOTHING, Entity
+from robolink.running.ready_queue import HELD
 from robolink.running.waiting import POLL_NS
 from robolink.task import asyncio_loop
 
@@ -28,10 +29,12 @@ class HostDriver:
         self.program = program
         self.inbox = cast(HostedInbox, executor.inbox)
         self._executor, self._context = executor, executor.context
-        self._queue, self._run = executor._queue_, executor.run
-        self._queue.timekeeper = self
+        self._queue = executor._queue_
+        self._own_run = None if type(executor).run is Executor.run else executor.run
+        self._run: Callable[[Entity, Any], None] | None = self._own_run
+        """Function that runs a callback; None for `Executor.run`."""
+        self._queue.keep_time_by(self)
         self._defaults, self._env = program.defaults, program.env
-        self.inbox.run = self.step
         self._scheduler = program.host.scheduler
         self._view, self._host_time, self._time = self._scheduler.view, self._scheduler.time, executor.context.time
         self._heap, self._next_serial = self._scheduler.heap, self._scheduler.serial.__next__
@@ -44,6 +47,7 @@ class HostDriver:
         self._has_ended = False
         self._loop: asyncio.AbstractEventLoop | None = None
         """The event loop of asyncio within which the executor is spun, if any."""
+        self.inbox.run = _step(self)
 
     # What code of the program sees
 
@@ -57,7 +61,8 @@ class HostDriver:
             left = POLL_NS  # as often as possible is every millisecond: else time would stand still
         time = self._time
         due = self._host_time._now + left if time is self._host_time else time.on_base(time.steady() + left)
-        heappush(self._heap, (due, CALLBACKS, self._next_serial(), timer.version, timer))
+        serial = self._next_serial  # for Python 3.11 a function in an attribute, no method
+        heappush(self._heap, (due, CALLBACKS, serial(), timer.version, timer))
 
     def postpone(self, task: Entity) -> None:
         """Run the next part of a task in a moment."""
@@ -87,7 +92,7 @@ class HostDriver:
         finally:
             self.withdraw()
             self._spinner = self._stop = self._loop = None
-            self._run = self._executor.run
+            self._run = self._own_run
         if not self._rests():  # the time is over, but not the callback that is under way
             self._scheduler.wait(holds=self._rests)
         self._raise_outcome()
@@ -127,35 +132,30 @@ class HostDriver:
 
     # Running
 
-    def step(self, runner: Runner) -> None:
-        """Run one callback, if one is ready; as short as can be, since every callback of every program comes here."""
-        if runner.defaults is not self._defaults:
-            runner.program, runner.defaults = self.program, self._defaults
-            here.defaults = self._defaults
-            if self._view.env is not self._env:
-                self._view.show(self.program)
-        queue = self._queue
-        if queue.pollables:
-            queue.poll()
-        found = queue.take()
+    def _take_and_run(self, runner: Runner) -> bool:
+        """Run the callback whose turn it is; False if there is none."""
+        found = self._queue.take()
         if found is None:
             self._check_end()
-            return
-        inbox = self.inbox
-        inbox.is_free, self._stepper = False, runner
-        try:
-            self._run(*found)
-        except BaseException as error:  # noqa: BLE001 - whoever spins meets it
-            self._stepper = None
-            self._end(error)
-            return
-        self._stepper = None
-        if (self._stop is not None or not self._context._ok or self._executor._is_shutdown) and self._is_at_end():
-            self._end()
-            return
-        inbox.is_free = self.is_lent
-        if not inbox.queued and (queue.ready or queue.turns or queue.blocked):
-            inbox.wake()
+            return False
+        self.inbox.is_free, self._stepper = False, runner
+        run = self._run or self._executor.run
+        run(*found)
+        return True
+
+    def _has_run(self, entity: Entity, outcome: Any, took: bool) -> bool:
+        """Go on after the turn of an entity that was ready alone, by its outcome; False if no callback was run."""
+        if outcome is not HELD and outcome is not NOTHING:
+            if isinstance(outcome, CoroutineType):
+                self._executor.run_coroutine(entity, outcome)
+            return True
+        if outcome is HELD:
+            self._queue.hold_back(entity)
+        else:
+            self._queue._took = took
+        self._stepper, self.inbox.is_free = None, self.is_lent
+        self._check_end()
+        return False
 
     def _check_end(self) -> None:
         """Let the spinning thread go if, with nothing ready, it is to end."""
@@ -183,3 +183,47 @@ class HostDriver:
             self._end()
         elif self._spinner is not None and self._spinner.wait is not None:
             self._scheduler.due.append(self._spinner.wait)
+
+
+def _step(driver: HostDriver) -> Callable[[Runner], None]:
+    """Return the function that runs one callback, if one is ready.
+
+    A closure, and with what it calls written out, since every callback of every program comes here.
+    """
+    program, defaults, env, view = driver.program, driver._defaults, driver._env, driver._view
+    queue, inbox, context, executor = driver._queue, driver.inbox, driver._context, driver._executor
+    ready, turns, blocked = queue.ready, queue.turns, queue.blocked
+
+    def step(runner: Runner) -> None:
+        if runner.defaults is not defaults:
+            runner.program, runner.defaults = program, defaults
+            runner.place[0] = defaults
+            if view.env is not env:
+                view.show(program)
+        if queue.pollables:
+            queue.poll()
+        try:
+            # A round of one, as usual; without the lock: one thread runs at a time, and what arrives takes none either.
+            if len(ready) == 1 and not blocked and not turns and driver._run is None:
+                entity = ready.popleft()
+                took = queue._took
+                queue._ran_tasks, queue._took, inbox.is_free, driver._stepper = False, True, False, runner
+                outcome = entity.turn()
+                has_run = outcome is None or driver._has_run(entity, outcome, took)
+            else:
+                has_run = driver._take_and_run(runner)
+        except BaseException as error:  # noqa: BLE001 - whoever spins meets it
+            driver._stepper = None
+            driver._end(error)
+            return
+        if not has_run:
+            return
+        driver._stepper = None
+        if (driver._stop is not None or not context._ok or executor._is_shutdown) and driver._is_at_end():
+            driver._end()
+            return
+        inbox.is_free = driver.is_lent
+        if not inbox.queued and (ready or turns or blocked):
+            inbox.wake()
+
+    return step

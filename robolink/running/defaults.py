@@ -130,19 +130,27 @@ class Defaults:
         """Returns True in the program's main thread, which Ctrl-C interrupts."""
 
 
+_of_process = Defaults()
+
+
 class _Here(threading.local):
-    defaults = Defaults()
+    def __init__(self) -> None:
+        self.place = [_of_process]
 
 
-here = _Here()
-"""The defaults of the calling thread."""
+_here = _Here()
+
+
+def place_of_defaults() -> list[Defaults]:
+    """Return the list whose only item is the defaults of the calling thread, for who sets them often."""
+    return _here.place
 
 
 def get_defaults() -> Defaults:
     """Return the defaults of the program whose code the calling thread runs."""
-    return here.defaults
+    return _here.place[0]
 
 
 def use_defaults(defaults: Defaults) -> None:
     """Make the calling thread run the code of another program from now on."""
-    here.defaults = defaults
+    _here.place[0] = defaults

@@ -23,6 +23,10 @@ NOTHING: Any = object()
 """Result of `take` when there is nothing to do after all."""
 
 
+HELD: Any = object()
+"""Result of an entity's `turn` when its callback group holds it back."""
+
+
 Place: TypeAlias = tuple[int, int, int, int]
 """Place of an entity in a round: TASK, WAITABLE or OTHER, its node's number, the rank of its kind, its own number."""
 
@@ -111,8 +115,11 @@ class ReadyQueue(Generic[EntityT]):
         """The polled entities: each is asked before each look at what is ready."""
         self.timers: list[tuple[int, int, int, Scheduled]] = []
         """Heap of deadlines in steady nanoseconds, each with a serial number and the timer's version."""
-        self.timekeeper: Timekeeper | None = None
-        """Keeps the deadlines instead of this queue, in a host."""
+        self.schedule: Callable[[Any, int], None] = self._schedule
+        """Makes a timer ready in so many nanoseconds of steady time; in a host one for all programs."""
+        self.postpone: Callable[[Any], None] = self._postpone
+        """Runs the next part of a task in a moment; in a host one for all programs."""
+        self.in_rounds = self.in_rounds  # in the instance, where Python 3.11 finds it in a tenth of the time
         self._serial = itertools.count()
         self._steady = steady
 
@@ -127,19 +134,15 @@ class ReadyQueue(Generic[EntityT]):
         self.ready.append(entity)
         self.inbox.wake()
 
-    def postpone(self, task: EntityT) -> None:
-        """Run the next part of a task in a moment."""
-        if self.timekeeper is not None:
-            self.timekeeper.postpone(task)
-            return
+    def keep_time_by(self, timekeeper: Timekeeper) -> None:
+        """Let another keep the deadlines."""
+        self.schedule, self.postpone = timekeeper.schedule, timekeeper.postpone
+
+    def _postpone(self, task: EntityT) -> None:
         self.postponed.append(task)
         self.inbox.wake()
 
-    def schedule(self, timer: Scheduled, left: int) -> None:
-        """Make a timer ready in `left` nanoseconds of steady time."""
-        if self.timekeeper is not None:
-            self.timekeeper.schedule(timer, left)
-            return
+    def _schedule(self, timer: Scheduled, left: int) -> None:
         due = self._steady() + left
         with self.lock:
             heapq.heappush(self.timers, (due, next(self._serial), timer.version, timer))
@@ -269,6 +272,11 @@ class ReadyQueue(Generic[EntityT]):
                         return target, arrival.content
         self.inbox.deliver(arrival)
         return None
+
+    def hold_back(self, entity: EntityT) -> None:
+        """Let an entity that was ready alone wait for its callback group."""
+        self._took, self._unsorted = False, 0
+        self.blocked.append(entity)
 
     def has_blocked(self) -> bool:
         """True if something ready waits for its callback group."""

@@ -9,12 +9,14 @@ from typing import Any
 import pytest
 
 from robolink import Duration, Node, Parameter, get_default_context, ok, shutdown
+from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.exceptions import NotFoundError, ServiceError
 from robolink.host import Host, HostError
 from robolink.interfaces.example_interfaces.srv import AddTwoInts
 from robolink.interfaces.std_msgs.msg import Int32
 from robolink.launch.shared_process import Member
 from robolink.running.timebase import SkewedTime
+from robolink.task import Future
 from robolink.transport.memory import MemoryTransport
 from tests.support.hosts import Counter, Listener
 
@@ -233,6 +235,47 @@ def test_a_callback_that_calls_a_service_lets_all_others_go_on(host: Host) -> No
     assert asks.sums == [(3, pytest.approx(2.55), 10)]  # its own other timer waits, as in a process
     assert other.count == 17
     assert listener.heard == list(range(1, 14))
+
+
+def test_a_group_is_kept_busy_by_a_coroutine_until_it_ends(host: Host) -> None:
+    class Awaits(Node):
+        def __init__(self) -> None:
+            super().__init__("awaits")
+            self.begun: list[str] = []
+            self.opened: Future[None] = Future()
+            self.create_timer(0.05, self.wait)
+            self.create_timer(0.2, lambda: self.begun.append("after it"))
+            self.create_timer(0.45, self.open, callback_group=ReentrantCallbackGroup())
+            self.create_subscription(Int32, "numbers", lambda message: self.begun.append("number"), 10)
+
+        async def wait(self) -> None:
+            self.begun.append("waits")
+            await self.opened
+            self.begun.append("goes on")
+
+        def open(self) -> None:
+            self.begun.append("opens")
+            self.opened.set_result(None)
+
+    host.start_node(Counter)
+    awaits = host.start_node(Awaits)
+    host.run(0.465)
+    assert awaits.begun[:3] == ["waits", "opens", "goes on"]
+    assert {"after it", "number"} <= set(awaits.begun[3:])
+
+
+def test_an_exception_in_a_coroutine_ends_its_program(host: Host, ends: list[Any]) -> None:
+    class Breaks(Node):
+        def __init__(self) -> None:
+            super().__init__("breaks")
+            self.create_timer(0.1, self.fail)
+
+        async def fail(self) -> None:
+            raise ValueError("no more")
+
+    host.start_node(Breaks)
+    host.run(1.0)
+    assert ends == [("Breaks", "crashed", 1)]
 
 
 def test_code_outside_may_call_and_wait_as_well(host: Host) -> None:
