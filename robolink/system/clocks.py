@@ -27,17 +27,17 @@ def _finest_now() -> Callable[[], int]:
     return time.time_ns
 
 
-_precise_now = _finest_now()
+def from_1970(read: Callable[[], int]) -> Callable[[], int]:
+    """Return a clock that shows 0 while `read` shows a date before 1970: ROS has no such times.
 
-
-def now() -> int:
-    """Return the time of day, in nanoseconds since the UNIX epoch.
-
-    A system whose date is before 1970, as a board without a battery may have it, is at 0: ROS has no such times.
+    It is `read` itself, a function in C, where that shows none now: a board without a battery may begin there, but
+    what has a date does not go back so far.
     """
-    found = _precise_now()
-    return found if found > 0 else 0
+    return read if read() > 0 else lambda: max(0, read())
 
+
+now = from_1970(_finest_now())
+"""Return the time of day, in nanoseconds since the UNIX epoch."""
 
 steady = time.perf_counter_ns if sys.platform == "win32" else time.monotonic_ns
 """Return the monotonic time in nanoseconds, from some start."""
