@@ -68,6 +68,8 @@ class Publisher(Destroyable, Generic[MsgT]):
         self._tell_alive = assertions(self._endpoint) if is_manual(qos_profile) else None
         self._lease: Lease | None = None
         self._expect(owner.context.time.steady)
+        self._send = self._outlets.sender(self._encode, self._attachment)
+        """Function that encodes and sends, the short way; None where there is more to do."""
         self._endpoint.warns = warns_of_types(callbacks)
         self._keeps_: object = None
         """The node, which lives while anybody refers to the publisher; None for those that the node made for itself."""
@@ -89,6 +91,10 @@ class Publisher(Destroyable, Generic[MsgT]):
             TransportError: (a ConnectionError) if it has more than 1 GiB, or the context has ended.
         """
         if isinstance(msg, self.msg_type):
+            send = self._send
+            if send is not None:
+                send(msg)
+                return
             encode = self._encode  # for Python 3.11 a function in an attribute, no method: half the time to find it
             payload = encode(msg)
         elif isinstance(msg, (bytes, bytearray)):
@@ -131,6 +137,7 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def _speak_humble(self, key: str) -> None:
         self._outlets.add(key)
+        self._send = None
         self._put, self._put_numbered = self._outlets.put, self._outlets.put_numbered
 
     def _on_other(self, came: bool) -> None:
@@ -189,7 +196,7 @@ class Publisher(Destroyable, Generic[MsgT]):
         """End the publisher, and undeclare it. Safe to call twice."""
         if not self._destroyed:
             self._destroyed = True
-            self._keeps_ = None
+            self._keeps_ = self._send = None
             for handler in self.event_handlers:
                 handler.destroy()
             self._outlets.close()
@@ -253,6 +260,11 @@ class _Outlets:
     def matched(self) -> bool:
         """True if anybody listens to one of the keys."""
         return any(outlet.matched for outlet in self._all)
+
+    def sender(self, encode: Callable[[Any], bytes], attachment: Callable[[], bytes]) -> Callable[[Any], None] | None:
+        """Return a function that encodes and sends a message, if the one outlet has its own way; not after `add`."""
+        make = getattr(self._all[0], "sender", None)
+        return None if make is None or self._latch is not None else make(encode, attachment, self.lock)
 
     def add(self, key: str) -> None:
         """Send to this key too from now on, and at once what late joiners get."""

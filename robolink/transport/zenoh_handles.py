@@ -6,6 +6,7 @@ import threading
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from typing import Any
 
 import zenoh
@@ -154,6 +155,30 @@ class ZenohOutlet(Declared):
             self._used.put(payload, attachment=attachment)
         except zenoh.ZError as error:
             raise self._holdings.failure(self.key, error) from None
+
+    def sender(
+        self, encode: Callable[[Any], bytes], attachment: Callable[[], bytes], lock: AbstractContextManager[object]
+    ) -> Callable[[Any], None]:
+        """Return a function that encodes a message and sends it; in one frame where it is small and goes elsewhere.
+
+        Args:
+            encode: Function that returns the payload of a message.
+            attachment: Function that numbers the message.
+            lock: Lock under which it is numbered and sent.
+        """
+
+        def send(message: Any) -> None:
+            payload = encode(message)
+            with lock:
+                if len(payload) >= LARGE or self._topic.sinks:
+                    self.put(payload, attachment())
+                    return
+                try:  # `put` written out: this is run once a message
+                    self._used.put(payload, attachment=attachment())
+                except zenoh.ZError as error:
+                    raise self._holdings.failure(self.key, error) from None
+
+        return send
 
     def repeat(self, payload: bytes, attachment: bytes) -> None:
         """Send a message that the subscriptions of this session, but for latched ones, have already."""
