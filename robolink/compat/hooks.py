@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType, ModuleType
 from typing import Any, TypeAlias
 
-from robolink.compat.maker import TOPS, defined_in, fill_private, hidden, room_fill, room_of
+from robolink.compat.maker import LIBRARIES, TOPS, defined_in, fill_private, hidden, room_fill, room_of
 from robolink.extensions.optional import is_here
 from robolink.interfaces import KINDS
 from robolink.interfaces.standard import INTERFACES
@@ -90,7 +90,6 @@ def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
 
 
 _OWN = str(Path(__file__).parents[1]) + os.sep
-_NEVER_TYPES = ("java", "org", "typing_extensions")
 _IMPORTERS = ("<frozen importlib", "<frozen zipimport", str(Path(importlib.__file__).parent) + os.sep)
 
 
@@ -103,7 +102,7 @@ def workspace_types(fullname: str) -> Fill | None:
     """
     top, dot, inner = fullname.partition(".")
     kind, _, private = inner.partition(".")
-    if top in TOPS or top in sys.stdlib_module_names or top in _NEVER_TYPES or (dot and kind not in KINDS):
+    if top in TOPS or top in sys.stdlib_module_names or top in LIBRARIES or (dot and kind not in KINDS):
         return None
     real = None if dot else FINDER.real(top)
     if real is not None and real.loader is not None:  # a folder that is not a package has none

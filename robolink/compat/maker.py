@@ -23,6 +23,8 @@ TOPS = frozenset({*packages(), *(name for name in ROOMS if "." not in name)})
 """The top-level names that are robolink's."""
 ALIKE = 0.85
 """Similarity from 0 to 1, as `closest` computes it, above which an unknown name is a misspelt one of ROS 2's."""
+LIBRARIES = frozenset(["java", "org", "typing_extensions"])
+"""Names that libraries look for in vain, and that are nobody's: Jython's, and what msgspec takes if it is there."""
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 NEVER_A_CHECKOUT = frozenset(
     {
@@ -95,7 +97,7 @@ def _refuse_misspelt(name: str) -> None:
     """Raise LackingModuleError for `std_msg` and the like, which nobody has."""
     if name[:1] == "_" or "." in name or not ("_" in name or name[:2] == "rc"):  # most imports are not ours: no look
         return
-    alike = _alike(name)
+    alike = "" if name in LIBRARIES else _alike(name)
     if alike and FINDER.real(name) is None:
         raise LackingModuleError(name, lambda: [alike])
 
