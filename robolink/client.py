@@ -18,13 +18,12 @@ from robolink.exceptions import (
     WireError,
 )
 from robolink.graph.endpoint import Endpoint, Owner
-from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
 from robolink.running.entity import CLIENT, NOTHING, Entity
 from robolink.running.inbox import Inbox
-from robolink.service_introspection import ServiceEnd
+from robolink.service_introspection import REQUEST_SENT, RESPONSE_RECEIVED, ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.task import Future, asyncio_loop
 from robolink.transport.base import Handle, Sink
@@ -158,7 +157,7 @@ class BaseClient(ServiceEnd):
         packed = self._encode(request), self._endpoint.attachment()
         if self.introspection is not None:
             requested = unpack_attachment(packed[1])
-            self.introspection.tell(ServiceEventInfo.REQUEST_SENT, request, requested.sequence, requested.gid)
+            self.introspection.tell(REQUEST_SENT, request, requested.sequence, requested.gid)
         return packed
 
     def take(self) -> Any:
@@ -208,7 +207,7 @@ class BaseClient(ServiceEnd):
         requested = unpack_attachment(attachment)
         response = self._decode(payload)
         if self.introspection is not None:
-            self.introspection.tell(ServiceEventInfo.RESPONSE_RECEIVED, response, requested.sequence, requested.gid)
+            self.introspection.tell(RESPONSE_RECEIVED, response, requested.sequence, requested.gid)
         return response
 
     def _no_answer(self, bad: Exception | None) -> ServiceError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.callback_groups import CallbackGroup
 from robolink.duration import Duration
@@ -23,10 +23,12 @@ from robolink.message import Message, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.destroyable import Destroyable
 from robolink.running.expectations import Deadline, Lease
-from robolink.running.ports import ContextLike
 from robolink.system.waits import fork_lock
 from robolink.transport.history import Latch, latched_depth
 from robolink.wire import NO_HASH, EndpointKind
+
+if TYPE_CHECKING:
+    from robolink.running.ports import ContextLike
 
 MsgT = TypeVar("MsgT", bound=Message)
 MsgType = TypeVar("MsgType")  # a name that programs import from here

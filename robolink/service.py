@@ -11,12 +11,11 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 from robolink.callback_groups import CallbackGroup
 from robolink.exceptions import DecodeError, OverwrittenError, WireError
 from robolink.graph.endpoint import Endpoint, Owner
-from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.logging import get_logger
 from robolink.message import Message, decoder, encoder, service_type
 from robolink.qos import QoSProfile
 from robolink.running.entity import SERVICE
-from robolink.service_introspection import ServiceEnd
+from robolink.service_introspection import REQUEST_RECEIVED, RESPONSE_SENT, ServiceEnd
 from robolink.service_introspection import ServiceIntrospectionState as ServiceIntrospectionState
 from robolink.text.callbacks import named
 from robolink.transport.base import Query
@@ -139,7 +138,7 @@ class Service(ServiceEnd):
             return None
         header = RequestHeader(query, asker.sequence, asker.gid)
         if self.introspection is not None:
-            self.introspection.tell(ServiceEventInfo.REQUEST_RECEIVED, request, asker.sequence, asker.gid)
+            self.introspection.tell(REQUEST_RECEIVED, request, asker.sequence, asker.gid)
         try:
             return self.respond(request, header)
         except BaseException:
@@ -181,7 +180,7 @@ class Service(ServiceEnd):
         header.query.close()
         if self.introspection is not None:
             requested = header.sequence_number, header.client_gid
-            self.introspection.tell(ServiceEventInfo.RESPONSE_SENT, response, *requested)
+            self.introspection.tell(RESPONSE_SENT, response, *requested)
 
     def _wrong_response(self, response: object) -> str:
         expected = f"the callback of service {self.service_name} must return a {self.srv_type.__name__}.Response"

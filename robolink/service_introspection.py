@@ -10,7 +10,6 @@ from robolink.clock import Clock
 from robolink.context import Context
 from robolink.exceptions import InvalidHandle
 from robolink.graph.endpoint import Endpoint
-from robolink.interfaces.service_msgs.msg import ServiceEventInfo
 from robolink.message import Message, Service
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile
@@ -20,7 +19,8 @@ from robolink.type_support import in_brackets
 SUFFIX = "/_service_event"
 """Suffix of a service's name in that of the topic of its events."""
 
-REQUESTS = (ServiceEventInfo.REQUEST_SENT, ServiceEventInfo.REQUEST_RECEIVED)
+REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
+"""Kinds of events: the constants of ServiceEventInfo, a type that is made when somebody turns introspection on."""
 
 
 class ServiceIntrospectionState(IntEnum):
@@ -42,7 +42,9 @@ class Introspection:
     """
 
     def __init__(self, endpoint: Endpoint, srv_type: type[Service], clock: Clock, qos: QoSProfile) -> None:
-        self.clock = clock
+        from robolink.interfaces.service_msgs.msg import ServiceEventInfo
+
+        self.clock, self._info = clock, ServiceEventInfo
         self.contents = False
         """True if events contain requests and responses, too."""
         self._event = srv_type.Event
@@ -57,13 +59,13 @@ class Introspection:
             sequence_number: Number of the call, in the order of its client's.
             client_gid: Global id of the client, 16 bytes.
         """
-        info = ServiceEventInfo(
+        info = self._info(
             event_type=event_type,
             stamp=self.clock.now().to_msg(),
             client_gid=client_gid,
             sequence_number=sequence_number,
         )
-        part = "request" if event_type in REQUESTS else "response"
+        part = "request" if event_type in (REQUEST_SENT, REQUEST_RECEIVED) else "response"
         event = self._event(info=info, **({part: [message]} if self.contents else {}))
         with contextlib.suppress(InvalidHandle):  # a coroutine may answer when its service is gone
             self._publisher.publish(event)

@@ -7,7 +7,7 @@ messages undecoded.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import msgspec
 
@@ -16,7 +16,6 @@ from robolink.logging import get_logger
 from robolink.message import import_numpy_for, type_hash, type_name
 from robolink.message.description import has_buffer_fields
 from robolink.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
-from robolink.running.ports import ContextLike
 from robolink.transport.base import Handle
 from robolink.wire import (
     CPU_BACKEND,
@@ -33,8 +32,19 @@ from robolink.wire import (
 )
 
 if TYPE_CHECKING:
+    from typing import Protocol
+
     from robolink.graph.graph import Graph
+    from robolink.running.ports import ContextLike
     from robolink.transport.base import Sink
+
+    class GraphContext(ContextLike, Protocol):
+        """Context as seen by an endpoint: it has a graph."""
+
+        @property
+        def graph(self) -> Graph:
+            """Graph of the nodes, topics and services that are announced on this domain."""
+
 
 MOST_REPORTED = 10
 """Most warnings for one topic of a node; a system in which all is wrong must not drown in them."""
@@ -85,14 +95,6 @@ def _explained(own: EndpointToken, other: EndpointToken) -> str:
         f" type differ ({own.type_hash[:_SHOWN]}… here, {other.type_hash[:_SHOWN]}… there): nothing gets from one"
         f" to the other; bring both to the same version of {package}"
     )
-
-
-class GraphContext(ContextLike, Protocol):
-    """Context as seen by an endpoint: it has a graph."""
-
-    @property
-    def graph(self) -> Graph:
-        """Graph of the nodes, topics and services that are announced on this domain."""
 
 
 class Owner(NamedTuple):
