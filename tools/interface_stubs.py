@@ -12,13 +12,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from robolink.interfaces import find
-from robolink.interfaces.standard import FOLDER, HASHES, KINDS, ROOT, packages, types_of
+from robolink.interfaces import find, standard
+from robolink.interfaces.standard import KINDS, ROOT, packages, types_of
 from robolink.message import type_name
 from robolink.message.description import described, hash_of
 from robolink.message.numbers import has_fixed_numbers
 from robolink.message.stub import stub_of
 
+FOLDER, HASHES = Path(standard.FOLDER), Path(standard.HASHES)
 HEAD = "# Made of the files beside it by tools/interface_stubs.py.\n"
 
 

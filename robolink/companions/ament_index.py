@@ -229,7 +229,7 @@ def package_not_here(path: str) -> str:
 
     That is one below `NOT_HERE`, or a file that a package lacks of which robolink has the types alone.
     """
-    for root in (NOT_HERE, FOLDER):
+    for root in (NOT_HERE, Path(FOLDER)):
         parts = Path(path).parts
         is_inside = parts[: len(root.parts)] == root.parts and len(parts) > len(root.parts)
         if is_inside and not Path(path).exists():
@@ -243,7 +243,8 @@ def _folder(name: str) -> Path | None:
         raise PackageNameError(f"'{name}' is not a valid package name")
     found = find_package(name) or _counterparts().get(name)
     if found is None and (_OF_TYPES.search(name) or instead_of(name) is None):
-        found = INTERFACES.get(name)  # of slam_toolbox and the like robolink has the types, and no files
+        folder = INTERFACES.get(name)  # of slam_toolbox and the like robolink has the types, and no files
+        found = None if folder is None else Path(folder)
     if found is None and name not in installed_packages():
         if _may_lack.get():
             return NOT_HERE / name

@@ -319,7 +319,7 @@ def get_interface_path(interface_name: str) -> str:
     short, dot, suffix = last.partition(".")
     use_interfaces()
     added = INTERFACES.get(package)
-    folders = [*WORKSPACE_TYPES.folders(package, kind), *([added / kind] if added is not None else ())]
+    folders = [*WORKSPACE_TYPES.folders(package, kind), *([Path(added, kind)] if added is not None else ())]
     own = (place / f"{short}.{suffix or kind}" for place in folders)
     path = next((each for each in own if each.is_file()), None) if suffix in ("", kind, "idl") else None
     if path is None and dot and suffix != kind:

@@ -28,7 +28,6 @@ from __future__ import annotations
 
 import os
 import sys
-from pathlib import Path
 
 from robolink.compat.hooks import hand_on, prepare_opencv, workspace_types
 from robolink.compat.maker import MAKER, has_rclpy, hidden
@@ -84,6 +83,8 @@ def enter_child(mode: str, with_opencv: bool, files: list[str]) -> None:
     if activate(mode) and with_opencv:
         prepare_opencv()
     if files:
+        from pathlib import Path
+
         from robolink.workspace.load import load_module
 
         for each in files:

@@ -8,15 +8,17 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from types import FrameType, ModuleType
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from robolink.compat.maker import LIBRARIES, TOPS, defined_in, fill_private, hidden, room_fill, room_of
 from robolink.extensions.optional import is_here
 from robolink.interfaces import KINDS
 from robolink.interfaces.standard import INTERFACES
 from robolink.workspace.modules import FINDER, Fill
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _OPENCV = "robolink.companions.opencv"
 """Module that prepares OpenCV, by name: it is imported when a program imports cv2, and not before."""
@@ -66,6 +68,8 @@ class _Names:
         self._enter, self._mode = enter, mode
 
     def __reduce__(self) -> tuple[Any, ...]:
+        from pathlib import Path  # late, as in all that most programs do without: it takes their start 3 ms
+
         loaded = [name for name in list(sys.modules) if name.endswith(".py") and Path(name).is_absolute()]
         return self._enter, (self._mode, "cv2" in FINDER.changes, loaded)
 
@@ -89,8 +93,8 @@ def _change_forkserver(ours: str, forkserver: ModuleType) -> None:
         server.set_forkserver_preload([ours])
 
 
-_OWN = str(Path(__file__).parents[1]) + os.sep
-_IMPORTERS = ("<frozen importlib", "<frozen zipimport", str(Path(importlib.__file__).parent) + os.sep)
+_OWN = os.path.dirname(os.path.dirname(__file__)) + os.sep  # noqa: PTH120
+_IMPORTERS = ("<frozen importlib", "<frozen zipimport", os.path.dirname(importlib.__file__) + os.sep)  # noqa: PTH120
 
 
 def workspace_types(fullname: str) -> Fill | None:
@@ -137,6 +141,8 @@ def _of_workspace(fullname: str) -> Fill | None:
 
 def _importing_file() -> Path | None:
     """Return the file whose code imports at this moment; None for code that is in no file."""
+    from pathlib import Path
+
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_code.co_filename.startswith((_OWN, *_IMPORTERS)):
         frame = frame.f_back

@@ -5,9 +5,9 @@ from __future__ import annotations
 import functools
 import importlib
 import importlib.util
+import re
 import sys
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -146,6 +146,8 @@ def has_rclpy() -> bool:
     spec = FINDER.real("rclpy")
     if spec is None or spec.loader is None:  # none, or a folder without __init__.py
         return False
+    from pathlib import Path  # late: a real rclpy is rare
+
     return not _is_the_users_own("rclpy") or any(Path(spec.origin or "").parent.glob("_rclpy_pybind11*"))
 
 
@@ -154,7 +156,7 @@ def _is_the_users_own(top: str) -> bool:
     spec = FINDER.real(top)
     if spec is None or spec.loader is None or not spec.origin:
         return False
-    return not {"site-packages", "dist-packages"} & set(Path(spec.origin).parts)
+    return not {"site-packages", "dist-packages"} & set(re.split(r"[/\\]", spec.origin))
 
 
 def _put(fullname: str, room: str, _new: ModuleType) -> None:
@@ -277,6 +279,8 @@ def fill_private(fullname: str, types: Iterable[str], module: ModuleType) -> Non
 
 def _modules_beside(fullname: str) -> list[str]:
     """Return the names that an import of the same package could have had."""
+    from pathlib import Path
+
     parent = fullname.rpartition(".")[0]
     listed = [name.rpartition(".")[2] for name in ROOMS if name.rpartition(".")[0] == parent]
     folders = getattr(sys.modules.get(room_of(parent)), "__path__", [])

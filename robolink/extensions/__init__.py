@@ -19,13 +19,13 @@ import importlib
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from robolink.exceptions import NotFoundError, RobolinkError
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
+    from pathlib import Path
 
 T = TypeVar("T")
 
@@ -173,8 +173,8 @@ def _may_have(group: str) -> bool:
         except OSError:  # it is not there
             continue
         for package in packages:
-            with contextlib.suppress(OSError):
-                if heading in Path(package, "entry_points.txt").read_bytes():
+            with contextlib.suppress(OSError), open(f"{package}/entry_points.txt", "rb") as file:  # noqa: PTH123
+                if heading in file.read():
                     return True
     return False
 
@@ -194,6 +194,8 @@ def module_path(module: str) -> Path:
     Raises:
         NotFoundError: If its first part is not installed.
     """
+    from pathlib import Path  # late: most programs look at no package, and it takes their start 3 ms
+
     top, *inner = module.split(".")
     # Robolink's own finders ask the registries for names that nobody has: they would come back here.
     finders = (each for each in sys.meta_path if not str(each.__module__).startswith("robolink."))

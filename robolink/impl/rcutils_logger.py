@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
-from pathlib import Path
 from types import FrameType
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
@@ -152,7 +152,8 @@ class _Site:
         if filters.clock is not None and not hasattr(filters.clock, "now"):
             raise ValueError(f"throttle_time_source_type must be a clock, got {filters.clock!r}")
         self.severity, self.name, self.filters = severity, name, filters
-        self.file = str(Path(frame.f_code.co_filename).absolute())
+        file = frame.f_code.co_filename
+        self.file = file if os.path.isabs(file) else os.path.join(os.getcwd(), file)  # noqa: PTH109, PTH117, PTH118
         self.function, self.line = frame.f_code.co_name, frame.f_lineno
         # The first line passes; with a clock of the user's it is held back at time 0, as rclpy does.
         self.last_logged = -(2**63) if filters.clock is None else 0

@@ -19,7 +19,6 @@ import sys
 import threading
 from collections.abc import Callable, Sequence
 from importlib.machinery import ModuleSpec
-from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,14 +28,14 @@ from robolink.extensions import Registry, module_path
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-FOLDER = Path(__file__).parent
+FOLDER = os.path.dirname(__file__)  # noqa: PTH120 - pathlib takes a node's start 3 ms
 KINDS = ("msg", "srv", "action")
 ROOT = "robolink.interfaces"
 
 PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 _made: dict[tuple[str, str, str], type[Any]] = {}
-_making: list[Path] = []
+_making: list[str] = []
 _homes: dict[tuple[str, str], Callable[[str], str]] = {}
 _lock = threading.RLock()
 """Held while a class is made: two threads that use a type first must get one class."""
@@ -50,15 +49,15 @@ def packages() -> tuple[str, ...]:
 
 
 @functools.cache
-def _own() -> dict[str, Path]:
-    return {package: FOLDER / package for package in packages()}
+def _own() -> dict[str, str]:
+    return {package: f"{FOLDER}/{package}" for package in packages()}
 
 
-def _folder(entry: EntryPoint) -> Path:
+def _folder(entry: EntryPoint) -> str:
     """Return the folder of a package of types that an entry point leads to."""
     if not entry.name.isidentifier():
         raise RobolinkError("a package of types has a name that programs can import, such as compass_msgs")
-    folder = module_path(entry.value)
+    folder = str(module_path(entry.value))
     if not any(_types_in(folder, kind) for kind in KINDS):
         raise RobolinkError(f"{folder} has no types, such as msg/NAME.msg")
     return folder
@@ -83,9 +82,9 @@ def types_of(package: str, kind: str) -> tuple[str, ...]:
 
 
 @functools.cache
-def _types_in(folder: Path, kind: str) -> tuple[str, ...]:
+def _types_in(folder: str, kind: str) -> tuple[str, ...]:
     try:
-        with os.scandir(folder / kind) as entries:
+        with os.scandir(f"{folder}/{kind}") as entries:
             return tuple(
                 sorted(each.name.removesuffix(f".{kind}") for each in entries if each.name.endswith(f".{kind}"))
             )
@@ -127,7 +126,7 @@ def _make(package: str, kind: str, short: str) -> type[Any]:
 
     folder = INTERFACES.get(package)
     assert folder is not None
-    path = folder / kind / f"{short}.{kind}"
+    path = f"{folder}/{kind}/{short}.{kind}"
     if path in _making:
         raise MessageError(f"a message cannot contain itself: {path}")
     made: type[Any]
@@ -140,18 +139,23 @@ def _make(package: str, kind: str, short: str) -> type[Any]:
     return made
 
 
-def _built(path: Path, package: str, kind: str, short: str) -> type[Any]:
+def _text(path: str) -> str:
+    with open(path, encoding="utf-8") as file:  # noqa: PTH123
+        return file.read()
+
+
+def _built(path: str, package: str, kind: str, short: str) -> type[Any]:
     from robolink.message.building import build
     from robolink.message.definition import parse
 
     _making.append(path)
     try:
-        return build(parse(path.read_text(encoding="utf-8"), f"{package}/{kind}/{short}", str(path)), _nested)
+        return build(parse(_text(path), f"{package}/{kind}/{short}", path), _nested)
     finally:
         _making.pop()
 
 
-def _complete(path: Path, service: type[Any]) -> None:
+def _complete(path: str, service: type[Any]) -> None:
     """Make the messages of a service, unless another thread has done it meanwhile."""
     from robolink.message.class_factory import complete_service, is_deferred
 
@@ -183,7 +187,7 @@ class Stated(NamedTuple):
     """True if it, or a message inside it, has a fixed number of numbers, for which its endpoints import numpy."""
 
 
-HASHES = FOLDER / "type_hashes.txt"
+HASHES = f"{FOLDER}/type_hashes.txt"
 """A line for each standard type: its name, its hash, and `numpy` for one with fixed numbers."""
 
 
@@ -196,8 +200,8 @@ def stated(cls: type[Any]) -> Stated | None:
     type_name = str(cls.__ros_type__)
     if _known(type_name) is not cls or type_name.partition("/")[0] not in packages():
         return None
-    _, _, rest = HASHES.read_bytes().partition(f"\n{type_name} ".encode())
-    words = rest.partition(b"\n")[0].decode().split(" ")
+    _, _, rest = _text(HASHES).partition(f"\n{type_name} ")
+    words = rest.partition("\n")[0].split(" ")
     return Stated(words[0], words[-1] == "numpy") if words[0] else None
 
 
@@ -241,7 +245,7 @@ class StandardFinder:
         if folder is None or (kind and not _types_in(folder, kind)):
             return None
         spec = ModuleSpec(fullname, self, is_package=True)  # type: ignore[arg-type] # importlib.abc takes 2 ms to import
-        spec.submodule_search_locations = [str(folder)] if not kind else []
+        spec.submodule_search_locations = [folder] if not kind else []
         return spec
 
     def create_module(self, _: ModuleSpec) -> None:
@@ -252,9 +256,9 @@ class StandardFinder:
         package, _, kind = module.__name__[len(ROOT) + 1 :].partition(".")
         folder = INTERFACES.get(package)
         assert folder is not None
-        module.__file__, readme = str(folder / kind), folder / "README.md"
+        module.__file__, readme = f"{folder}/{kind}".rstrip("/"), f"{folder}/README.md"
         if not kind:
-            module.__doc__ = readme.read_text(encoding="utf-8") if readme.is_file() else _purpose(package, folder)
+            module.__doc__ = _text(readme) if os.path.isfile(readme) else _purpose(package, folder)  # noqa: PTH113
             return
         names = types_of(package, kind)
         vars(module)["__all__"] = list(names)
@@ -262,10 +266,10 @@ class StandardFinder:
         module.__dir__ = lambda: sorted({*vars(module), *names})  # type: ignore[method-assign]
 
 
-def _purpose(package: str, folder: Path) -> str:
+def _purpose(package: str, folder: str) -> str:
     """Return the text about a package without a README: the comment at the head of its first type."""
-    first = next(file for kind in KINDS for file in sorted((folder / kind).glob(f"*.{kind}")))
-    lines = itertools.takewhile(lambda line: line.startswith("#"), first.read_text(encoding="utf-8").splitlines())
+    first = next(f"{folder}/{kind}/{short}.{kind}" for kind in KINDS for short in _types_in(folder, kind))
+    lines = itertools.takewhile(lambda line: line.startswith("#"), _text(first).splitlines())
     return "\n".join([f"# {package}\n", *(line.removeprefix("#").strip() for line in lines)])
 
 

@@ -17,7 +17,6 @@ import re
 import sys
 from array import array
 from collections.abc import Callable, Iterator
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -181,6 +180,8 @@ def _type_name(module: str, qualname: str) -> str:
         return f"{package}/{kind}/{name}"
     if module == "__main__":
         module = getattr(sys.modules.get("__main__"), "__file__", None) or "main"
+    from pathlib import PurePath  # late: types of files come with their names
+
     stem = PurePath(module).stem if ("/" in module or "\\" in module) else module.rpartition(".")[2]
     package = re.sub("[^a-z0-9]+", "_", stem.lower()).strip("_")  # rosidl's rule for the names of packages
     return f"{package if package[:1].isalpha() else f'node_{package}'.rstrip('_')}/msg/{name}"

@@ -179,7 +179,7 @@ def as_ros(mode: str) -> dict[str, Any]:
 
 
 _DELAY_ON_LOOPBACK_MS = 1
-"""Wait of `open()` for ROS 2's router, in milliseconds: on this machine nearly nobody has one, and each node would wait.
+"""Wait of `open()` for ROS 2's router, in milliseconds: nearly nobody has one here, and each node would wait.
 
 With 20 as elsewhere a node started a sixth later, and heard no more: of messages that were published at once, to a
 process that neither end knew and to one behind a router, as many arrived, also on a busy machine.

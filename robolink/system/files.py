@@ -14,7 +14,10 @@ import stat
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _KINDS = {
     stat.S_IFIFO: "a FIFO",
@@ -37,6 +40,8 @@ _PAUSE = 0.02
 
 def expanded(path: str | os.PathLike[str]) -> Path:
     """Return a path with `~` replaced by the home folder; as it is where that is not known, as for `~nobody-here`."""
+    from pathlib import Path  # late: it takes a node's start 3 ms
+
     try:
         return Path(path).expanduser()
     except RuntimeError:
@@ -60,7 +65,7 @@ def read_plain(path: str | os.PathLike[str], most: int) -> bytes:
     Raises OSError, whose `strerror` is the reason: also for a file that is not regular, which is not opened, and for
     one that is larger. Raises ValueError for an invalid path.
     """
-    _check(Path(path).stat(), path)  # before it is opened, since opening alone makes some devices act
+    _check(os.stat(path), path)  # noqa: PTH116 - before it is opened, since opening alone makes some devices act
     with os.fdopen(os.open(path, _FLAGS), "rb", buffering=0) as file:
         found = os.fstat(file.fileno())
         _check(found, path)

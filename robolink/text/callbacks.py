@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, NamedTuple
 
@@ -21,6 +20,8 @@ class Place(NamedTuple):
     line: int
 
     def __str__(self) -> str:
+        from pathlib import Path  # late: it takes a node's start 3 ms
+
         return f"{Path(self.file).name}:{self.line}"
 
 

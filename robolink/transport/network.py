@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from robolink.exceptions import TransportError
@@ -26,6 +25,8 @@ from robolink.transport import shared_memory
 from robolink.transport.reach import as_json, mode_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import zenoh
 
     from robolink.networks.limits import Limits

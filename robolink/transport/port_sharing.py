@@ -11,7 +11,6 @@ import os
 import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robolink.constants import LAST_DOMAIN
@@ -107,6 +106,7 @@ class PortClaim:
 
     def _create(self, port: int, folder: str | None) -> bool:
         import tempfile  # late: it costs every node's start a few ms, and only Windows wants it
+        from pathlib import Path
 
         self.path = Path(folder or tempfile.gettempdir()) / f"robolink-{port}.lock"
         self._open()
