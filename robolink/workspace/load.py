@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from msgspec.structs import replace
@@ -381,8 +381,22 @@ def make_node(node_class: Callable[[], Node]) -> Node:
     return node
 
 
+def _clearly_needs_nothing(found: Callable[[], Any]) -> bool:
+    """True for a function, or a class with an `__init__`, that plainly has no arguments without a default."""
+    makes: Any = getattr(found, "__new__", None)
+    is_class = isinstance(found, type) and type(found).__call__ is type.__call__ and makes is object.__new__
+    plain: Any = found.__init__ if is_class else found
+    if not isinstance(plain, FunctionType) or vars(plain).keys() & {"__wrapped__", "__signature__"}:
+        return False
+    code = plain.__code__
+    has_keywords = code.co_kwonlyargcount > len(plain.__kwdefaults__ or {})
+    return not has_keywords and code.co_argcount - len(plain.__defaults__ or ()) <= int(is_class)
+
+
 def check_needs_nothing(found: Callable[[], Any]) -> None:
     """Raise NodeLoadError for a class or function that needs arguments: nobody is there to give them."""
+    if _clearly_needs_nothing(found):
+        return
     import inspect  # late: it takes 5 ms
 
     try:
