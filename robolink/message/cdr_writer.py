@@ -6,6 +6,7 @@ import codecs
 import keyword
 import struct
 from array import array
+from collections import Counter
 from typing import Any
 
 from robolink.message.annotations import FieldType
@@ -27,6 +28,10 @@ class WriterSource:
         self.run: list[tuple[str, str]] = []
         self.chunks = 0
         self.joined: list[str] | None = None if _has_loops(cls) else []
+        self.loops: list[str] = []
+        """Lines of the functions that write sequences of messages which the type has several times."""
+        self._loop_of: dict[type[Message], str] = {}
+        self._several = {each for each, count in Counter(_elements_of(cls)).items() if count > 1}
         self._fields(cls, "m")  # whoever encodes has chosen the function by the message's class
 
     def text(self) -> str:
@@ -43,7 +48,7 @@ class WriterSource:
         if self.chunks and self.joined is None:
             start.append("        parts = [HEAD]; p = parts.append")
         end = ["    except Exception as error:", "        raise fail(m, error) from None"]
-        return "\n".join([*start, *self.out.lines, *end])
+        return "\n".join([*self.loops, *start, *self.out.lines, *end])
 
     def _message(self, cls: type[Message], path: str) -> None:
         made = self.out.constant("C", cls)
@@ -153,6 +158,22 @@ class WriterSource:
     def _elements(self, kind: FieldType, name: str) -> None:
         """Write one element after the other: messages, strings, bytes."""
         self._at_run_time()
+        if kind.message in self._several:
+            self.out.add(f"o = {self._loop(kind, kind.message)}(p, o, {name})")
+        else:
+            self._in_a_loop(kind, name)
+
+    def _loop(self, kind: FieldType, cls: type[Message]) -> str:
+        """Return the function that writes messages of a class: compiling it at each place took a node's start 2 ms."""
+        if cls not in self._loop_of:
+            function = self._loop_of[cls] = self.out.fresh("w")
+            lines, depth, self.out.lines, self.out.depth = self.out.lines, self.out.depth, [], 1
+            self._in_a_loop(kind, "v")
+            self.loops += [f"def {function}(p, o, v):", *self.out.lines, "    return o"]
+            self.out.lines, self.out.depth = lines, depth
+        return self._loop_of[cls]
+
+    def _in_a_loop(self, kind: FieldType, name: str) -> None:
         element = self.out.fresh("e")
         self.out.add(f"for {element} in {name}:")
         self.out.depth += 1
@@ -218,6 +239,15 @@ def _has_loops(cls: type[Message]) -> bool:
         or (kind.message is not None and _has_loops(kind.message))
         for kind in cls.__ros_fields__.values()
     )
+
+
+def _elements_of(cls: type[Message]) -> list[type[Message]]:
+    """Return the classes of the messages in sequences, once for each sequence."""
+    found = []
+    for kind in cls.__ros_fields__.values():
+        if kind.message is not None:
+            found += [*([kind.message] if kind.shape != "one" else []), *_elements_of(kind.message)]
+    return found
 
 
 def padded_with_head(codes: list[str]) -> Any:
