@@ -72,7 +72,7 @@ class Executor:
         self._queue_ = self._queue_type_(self._context.make_inbox(), self._context.time.steady)
         """Ready queue: what is ready, and what will be."""
         self.inbox = self._queue_.inbox
-        self._waiting = Waiting(self._queue_, self._context.time)
+        self._waiting = Waiting(self._queue_, self._context)
         self._nodes_ = SpunNodes(self._queue_, self._context)
         self._spinners = Spinners(self._queue_.lock)
         self._deadlock_warning = DeadlockWarning(self._queue_, self._nodes_.added)
@@ -363,18 +363,20 @@ class Executor:
         # Not a method of SingleThreadedExecutor that calls this one: that call is 4 % of each `spin_once`.
         if self._driver is not None and self._is_spun_by_host(deadline, stop, once=once):
             return
-        time, thread, ok = self._context.time, threading.get_ident(), self._context.ok
+        context, thread = self._context, threading.get_ident()
         threads = self._spinners.threads
         if deadline is None and (threads or self._runs_here is not None) and self.spins_here:
             stop = self._deadlock_warning.watching(stop, self._is_held_here)
         threads.append(thread)
         if self._nodes_.parked is not None:
             self._nodes_.evict()
+        wait, dispatch = self._waiting.wait, self._dispatch
         try:
             while True:
-                self._dispatch(*self._waiting.wait(self, deadline, stop))
-                ends = once or self._is_shutdown or not ok() or (stop is not None and stop())
-                if ends or (deadline is not None and time.steady() >= deadline):
+                entity, taken = wait(self, deadline, stop)
+                dispatch(entity, taken)
+                ends = once or self._is_shutdown or not context._ok or (stop is not None and stop())
+                if ends or (deadline is not None and context.time.steady() >= deadline):
                     return
         except (TimeoutException, ShutdownException, ConditionReachedException):
             pass
@@ -501,7 +503,7 @@ class MultiThreadedExecutor(Executor):
         self._threads = CallbackThreads(count, self)
         self._executor = self._threads.pool
         self._waiting.take, self._waiting.take_at_once = self._threads.take, self._threads.take_at_once
-        self._waiting.pause = self._threads.pause
+        self._waiting.pause, self._waiting.failures = self._threads.pause, self._threads.failures
         self._runs_here = self._threads.runs_here
 
     def _check_interrupt(self) -> None:

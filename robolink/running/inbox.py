@@ -44,7 +44,8 @@ class Inbox:
         self._arrival = arrival_type(self._queue.put)
         self.lock = threading.RLock()
         """Lock of the mailboxes of this inbox's targets."""
-        self._get = self._queue.get
+        self.get = self._queue.get
+        """Returns the oldest arrival, undelivered, as `queue.SimpleQueue.get` does; for time bases, who wait here."""
         self.empty: Callable[[], bool] = self._queue.empty
         """True if nothing waits here."""
 
@@ -85,7 +86,7 @@ class Inbox:
         """
         try:
             if timeout is None:  # so long that it cannot pass within the call, as `get_within` guards against
-                return self._get(True, A_WHILE)
+                return self.get(True, A_WHILE)
             return get_within(self._queue, min(timeout, A_WHILE))
         except queue.Empty:
             return None

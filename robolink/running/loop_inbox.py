@@ -33,7 +33,7 @@ class LoopInbox(Inbox):
 
     def _listen(self) -> None:
         while not self._is_closed:
-            arrival = self._get()
+            arrival = self.get()
             if arrival is not None:
                 self.deliver(arrival)
                 self.sweep()

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 class ContextLike(Protocol):
     """Context as seen from below: its time, its network, its end, and the threads of an executor."""
 
+    _ok: bool
+    """What `ok` returns, without a call."""
+
     @property
     def time(self) -> TimeBase:
         """The time base of all its nodes."""

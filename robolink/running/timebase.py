@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from robolink.running.inbox import Inbox
 
 
+_steady = clocks.steady
+
 POLL = 0.001
 """Polling period of `wait_until` in real time, in seconds."""
 
@@ -92,9 +94,17 @@ class SystemTime:
 
     def wait(self, inbox: Inbox, until: int | None) -> Any:
         """Wait until something arrives, and give it undelivered, or until steady time is `until`; or less long."""
-        if until is None:
-            return inbox.wait(None)
-        return inbox.wait(max(0.0, (until - self.steady()) / 1e9))
+        get = inbox.get
+        try:  # `Inbox.wait` written out, where it says why: this is run for every callback
+            if until is None:
+                return get(True, A_WHILE)
+            left = (until - _steady()) / 1e9
+            try:
+                return get(False)
+            except queue.Empty:
+                return get(True, left if left < A_WHILE else A_WHILE) if left > 0 else None
+        except queue.Empty:
+            return None
 
     def sleep(self, nanoseconds: int) -> None:
         """Let so much time pass."""

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from robolink.running.entity import Entity
 from robolink.running.execution import ConditionReachedException, TimeoutException, TimeoutObject, logger_of
 from robolink.running.ready_queue import ReadyQueue, earlier
-from robolink.running.timebase import TimeBase
 from robolink.system.waits import wait_for
 
 if TYPE_CHECKING:
-    from robolink.running.ports import SpunNode
+    from robolink.running.ports import ContextLike, SpunNode
 
 POLL_NS = 1_000_000
 """Polling period, in nanoseconds, of a coroutine that awaits something foreign, which wakes no executor."""
@@ -26,6 +25,9 @@ Taken = tuple[Entity, Any]
 class Ending(Protocol):
     """Executor as seen by its wait: it may end meanwhile."""
 
+    _is_shutdown: bool
+    """True once it has been shut down."""
+
     def check_end(self) -> None:
         """Raise if the executor or its context has ended."""
 
@@ -33,13 +35,16 @@ class Ending(Protocol):
 class Waiting:
     """Waits at a ready queue for an entity to take; an executor with threads puts its own ways of both in place."""
 
-    def __init__(self, queue: ReadyQueue[Entity], time: TimeBase) -> None:
-        self._queue, self._inbox, self._time = queue, queue.inbox, time
+    def __init__(self, queue: ReadyQueue[Entity], context: ContextLike) -> None:
+        self._queue, self._inbox = queue, queue.inbox
+        self._context, self._time = context, context.time
+        self.failures: Sized = ()
+        """What callbacks in other threads have raised, for `check_end` to raise."""
         self.take: Callable[..., Taken | None] = queue.take
         """Takes what is ready; None if there is nothing that may run now."""
         self.take_at_once: Callable[..., Taken | None] = queue.take_at_once
         """Takes what has just arrived, if nothing else waits; else None."""
-        self.pause = time.wait
+        self.pause = context.time.wait
         """Waits for an arrival, until a moment of steady time at most."""
 
     def deadline(self, timeout_sec: float | TimeoutObject | None) -> int | None:
@@ -73,9 +78,8 @@ class Waiting:
                 taken = self.take(accepts)
                 if taken is not None:
                     return taken
-            if stop is not None and stop():
-                raise ConditionReachedException
-            executor.check_end()
+            if stop is not None or self.failures or executor._is_shutdown or not self._context._ok:  # else a call less
+                _check(executor, stop)
             usual = deadline is None and not queue.postponed  # then a call less
             arrival = self.pause(inbox, next_timer) if usual else self._wait_for_arrival(deadline, next_timer)
             if arrival is not None:
@@ -94,6 +98,12 @@ class Waiting:
             return None  # also whoever spins without waiting gets them done
         wake_at = earlier(deadline, next_timer)
         return self.pause(self._inbox, earlier(wake_at, self._time.steady() + POLL_NS) if postponed else wake_at)
+
+
+def _check(executor: Ending, stop: Callable[[], bool] | None) -> None:
+    if stop is not None and stop():
+        raise ConditionReachedException
+    executor.check_end()
 
 
 class Spinners:
