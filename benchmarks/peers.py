@@ -83,15 +83,16 @@ def measure(game: Game, there: Field, record: Record, rounds: int, options: Opti
     """Play a game by turns; who fails is out of it."""
     out: set[str] = set()
     begun = time.monotonic()
-    for number in range(rounds):
+    for _ in range(rounds):
         for name in game.players:
             player = there.players.get(name)
-            if player is None or name in out or number >= game.rounds.get(name, rounds):
+            if player is None or name in out:
                 continue
             try:
                 if game.needs and game.needs not in there.players:
                     raise GameError(f"needs {game.needs}")
                 record.add(name, game.play(Turn(game.name, player, there.players, options)))
+                record.write()
             except (GameError, OSError, ValueError, subprocess.SubprocessError) as error:
                 out.add(name)
                 record.fail(game, name, f"{type(error).__name__}: {error}")

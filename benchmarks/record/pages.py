@@ -27,6 +27,8 @@ OURS = ("hour", "follow")
 README = ("twist", "scan", "1mb", "6mb", "rate-1mb", "flood-10", "beat", "start", "memory")
 LEAST_PLAYERS = ("robolink", "rclpy", "bare", "sdk", "dora")
 """Columns of the README."""
+LEAST_LOST = 0.005
+"""Share of what was sent whose loss is said."""
 _BLOCK = re.compile(r"(<!-- record: ([\w-]+) -->\n).*?(<!-- record ends -->)", re.DOTALL)
 
 
@@ -58,6 +60,9 @@ def cells(found: Found, row: str, players: Sequence[str], *, ratios: bool) -> li
         text = shown(medians[player], ROWS[row].unit)
         if ratios and own and player != "robolink":
             text += f" ({medians[player] / own:.2f})"
+        lost = found["medians"].get(f"{row}/lost", {}).get(player, 0.0)
+        if ratios and lost >= LEAST_LOST:
+            text += f", {lost:.0%} lost"
         words.append(text)
     return words
 
@@ -86,19 +91,18 @@ def comparison(rows: Sequence[str]) -> Callable[[Found], str]:
     return made
 
 
-def losses(found: Found) -> str:
-    """Return the sentence behind the floods: shares that were lost, and messages that came out of order."""
+def disorder(found: Found) -> str:
+    """Return the sentence behind the floods: whose messages came out of order, twice or changed, and how many."""
     said = []
     for player in players_of(found, FLOODS, without=["build"]):
-        medians = found["medians"]
-        lost = [shown(medians[f"{row}/lost"][player], "%") for row in FLOODS if player in medians.get(row, {})]
-        wrong = sum(sum(found["rows"][f"{row}/wrong"][player]) for row in FLOODS if player in medians.get(row, {}))
-        said.append(f"{TITLES[player]} {', '.join(lost)}" + (f" ({wrong:.0f} out of order)" if wrong else ""))
-    return f"\nLost of what was sent, in the order of the rows: {'; '.join(said)}.\n"
+        wrong = sum(sum(found["rows"].get(f"{row}/wrong", {}).get(player, [])) for row in FLOODS)
+        if wrong:
+            said.append(f"{wrong:.0f} of {TITLES[player]}'s")
+    return f"\nOut of order, twice or changed, in all rounds: {', '.join(said) or 'none'}.\n"
 
 
 def floods(found: Found) -> str:
-    return comparison(FLOODS)(found) + losses(found)
+    return comparison(FLOODS)(found) + disorder(found)
 
 
 def alone(found: Found) -> str:
@@ -115,13 +119,10 @@ def conditions(found: Found) -> str:
         for name, each in found["versions"].items()
         if name != "build"
     }
-    return (
-        f"Medians of {rounds} rounds by turns on {found['date']}, on {machine['cores']} cores "
-        f"({machine['processor']}), "
-        f"{machine['system']}, Python {machine['python']}, load {machine['load']} before: "
-        + "; ".join(f"{name}: {text}" for name, text in versions.items())
-        + ".\n"
-    )
+    turns = "rounds by turns" if rounds > 1 else "round"
+    where = f"on {machine['cores']} cores ({machine['processor']}), {machine['system']}, Python {machine['python']}"
+    with_what = "; ".join(f"{name}: {text}" for name, text in versions.items())
+    return f"Medians of {rounds} {turns} on {found['date']}, {where}, load {machine['load']} before: {with_what}.\n"
 
 
 def readme(found: Found, *, portuguese: bool) -> str:
@@ -160,7 +161,9 @@ def rounds(found: Found) -> str:
             body.append([TITLES[name], shown(medians[name], of.unit), f"{least} to {most}", *ratios])
         head = ["", "median", "least to most", "over robolink", "over the other build", "over bare Zenoh"]
         parts.append(f"**{of.english[:1].upper()}{of.english[1:]}**\n\n{table(head, body)}")
-    parts += [f"{game}, {name}: {reason}\n" for game, each in found["failed"].items() for name, reason in each.items()]
+    parts += [
+        f"{game}, {TITLES[name]}: {reason}\n" for game, each in found["failed"].items() for name, reason in each.items()
+    ]
     if found["missing"]:
         parts.append(
             "Not there: " + "; ".join(f"{name}, {reason}" for name, reason in found["missing"].items()) + ".\n"
