@@ -18,7 +18,6 @@ from tools.docs_site.pages import addresses
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PORTUGUESE = (ROOT / "README.pt-BR.md").read_text(encoding="utf-8")
-PERFORMANCE = (ROOT / "docs" / "reference" / "performance.md").read_text(encoding="utf-8")
 BESIDE_ROS2 = (ROOT / "docs" / "reference" / "ros2.md").read_text(encoding="utf-8")
 
 
@@ -61,34 +60,6 @@ def test_it_is_short_and_its_program_has_twelve_lines() -> None:
     assert len([line for line in program.splitlines() if line.strip()]) == 12
 
 
-def table(text: str, heading: str) -> list[list[str]]:
-    """Return the cells of the first table below a heading, without its head."""
-    (first, *_) = re.findall(r"(?:^\|.*\n)+", text.partition(heading)[2], re.MULTILINE)
-    return [[cell.strip() for cell in row.strip("|").split("|")] for row in first.splitlines()[2:]]
-
-
-def ratios(rows: list[list[str]], column: int) -> list[str]:
-    """Return the ratios of a column: what is in bold, or the whole cell."""
-    return [(re.findall(r"\*\*(.*?)\*\*", row[column]) or [row[column]])[0] for row in rows]
-
-
-def test_the_figures_of_speed_are_those_of_the_page_on_performance() -> None:
-    trips = table(PERFORMANCE, "## Messages between two processes")
-    twist, _, image, _ = ratios(trips, 2)
-    assert f"a Twist takes {twist} times as long, an image of 1 MB {image}." in README
-    a_twist, an_image, memory, sends, _, receives, _, size = table(PERFORMANCE, "## Beside a real rclpy")
-    for column in (1, 2):
-        assert [row[column] for row in table(README, "## Speed")][:4] == [
-            a_twist[column].partition(" (")[0],
-            an_image[column].partition(" (")[0],
-            f"{memory[column]}; {size[column]}",
-            f"{sends[column]}; {receives[column]}",
-        ]
-    peers = {row[0].split()[0]: f"{row[1]}, {row[2]}" for row in table(PERFORMANCE, "## Peers")}
-    beside = table(README, "## Beside ROS 2")[-1]
-    assert beside[1:] == [peers[each] for each in ("robolink", "rclpy", "dora", "zenoh-ros2-sdk")]
-
-
 def test_the_number_of_rclpys_tests_that_pass_is_that_of_the_page() -> None:
     page = (ROOT / "docs" / "reference" / "rclpy.md").read_text(encoding="utf-8")
     ((passed, failed, other),) = re.findall(r"^\| all \| (\d+) \| (\d+) \| (\d+) \|$", page, re.MULTILINE)
@@ -106,12 +77,6 @@ def test_both_languages_have_the_same_code_parts_and_links() -> None:
     assert [each.text for each in blocks(PORTUGUESE)] == [each.text for each in blocks(README)]
     assert [level for level, _ in headings(PORTUGUESE)] == [level for level, _ in headings(README)]
     assert ["README.pt-BR.md" if each == "README.md" else each for each in targets(PORTUGUESE)] == targets(README)
-    for heading, other in (("## Speed", "## Velocidade"), ("## Beside", "## Ao lado")):
-        english, portuguese = (
-            [re.findall(r"\d+\.\d+", " ".join(row)) for row in rows]
-            for rows in (table(README, heading), table(PORTUGUESE.replace(",", "."), other))
-        )
-        assert portuguese == english
 
 
 def test_each_leads_to_the_other_in_its_first_lines() -> None:
