@@ -198,22 +198,30 @@ def _scouting(
 
 def only_on(interface: str) -> dict[str, Any]:
     """Return the access control that confines a session to one network interface."""
+    # ** does not match what begins with @: the graph and the history of latched topics. Zenoh looks up each new key for
+    # each kind of message, in both directions, at each link: where thousands of announcements come, what is not needed
+    # for a kind costs. A graph's token is neither data nor a subscription.
+    data = ["**", "**/@adv/**"]
+    rules = {
+        "data": (data, ["put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"]),
+        "graph": (
+            ["@ros2_lv/**", *data],
+            ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber"],
+        ),
+    }
     return {
         "enabled": True,
         "default_permission": "deny",
         "rules": [
             {
-                "id": "all",
+                "id": name,
                 "permission": "allow",
                 "flows": ["ingress", "egress"],
-                # ** does not match what begins with @: the graph and the history of latched topics.
-                "key_exprs": ["**", "@ros2_lv/**", "**/@adv/**"],
-                "messages": [
-                    *("put", "delete", "declare_subscriber", "query", "reply", "declare_queryable"),
-                    *("liveliness_token", "liveliness_query", "declare_liveliness_subscriber"),
-                ],
+                "key_exprs": keys,
+                "messages": messages,
             }
+            for name, (keys, messages) in rules.items()
         ],
         "subjects": [{"id": "loopback", "interfaces": [interface]}],
-        "policies": [{"rules": ["all"], "subjects": ["loopback"]}],
+        "policies": [{"rules": [*rules], "subjects": ["loopback"]}],
     }
