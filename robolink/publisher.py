@@ -19,12 +19,13 @@ from robolink.event_handler import (
 )
 from robolink.graph.endpoint import Endpoint, Owner
 from robolink.graph.liveliness import assertions, deadline_ns, is_manual, lease_ns
-from robolink.message import Message, encoder, message_type
+from robolink.message import Message, buffers_encoder, encoder, message_type
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.running.destroyable import Destroyable
 from robolink.running.expectations import Deadline, Lease
 from robolink.system.waits import fork_lock
 from robolink.transport.history import Latch, latched_depth
+from robolink.transport.pieces import LARGE, Pieces
 from robolink.wire import NO_HASH, EndpointKind
 
 if TYPE_CHECKING:
@@ -60,13 +61,14 @@ class Publisher(Destroyable, Generic[MsgT]):
         self.topic = self._topic_name = topic
         self.qos_profile = qos_profile
         self._destroyed = False  # in the instance, where Python 3.11 finds it in a tenth of the time
-        self._encode = encoder(message_type(msg_type))
+        self._encode: Callable[[Any], Any] = encoder(message_type(msg_type))
         self._endpoint = Endpoint(owner, EndpointKind.PUBLISHER, topic, msg_type, qos_profile)
         callbacks = event_callbacks or PublisherEventCallbacks()
         self.event_handlers = callbacks.create_event_handlers(callback_group, self, topic)
         self._outlets = _Outlets(self._endpoint, qos_profile)
         self._put, self._attachment = self._outlets.put, self._endpoint.attachment
         self._put_numbered = self._outlets.put_numbered
+        self._outlets.when_shared(_weakly(self._encode_in_pieces))
         self._tell_alive = assertions(self._endpoint) if is_manual(qos_profile) else None
         self._lease: Lease | None = None
         self._expect(owner.context.time.steady)
@@ -113,6 +115,19 @@ class Publisher(Destroyable, Generic[MsgT]):
         with self._outlets.lock:
             self._put(payload, self._attachment())
 
+    def _encode_in_pieces(self) -> None:
+        """Encode in pieces from now on: messages are large, and go to shared memory."""
+        buffers = buffers_encoder(message_type(self.msg_type))
+
+        def encode(msg: Any) -> bytes | Pieces:
+            made = Pieces(buffers(msg))
+            return made if len(made) >= LARGE else bytes(made)
+
+        with self._outlets.lock:
+            self._encode = encode
+            if self._send is not None:
+                self._send = self._outlets.sender(encode, self._attachment)
+
     def _expect(self, steady: Callable[[], int]) -> None:
         """Let each message meet the deadline and renew the lease, where there are callbacks for what becomes of them.
 
@@ -139,7 +154,8 @@ class Publisher(Destroyable, Generic[MsgT]):
 
     def _speak_humble(self, key: str) -> None:
         self._outlets.add(key)
-        self._send = None
+        with self._outlets.lock:  # else `_encode_in_pieces` could undo it
+            self._send = None
         self._put, self._put_numbered = self._outlets.put, self._outlets.put_numbered
 
     def _on_other(self, came: bool) -> None:
@@ -258,12 +274,17 @@ class _Outlets:
         else:
             self.put_numbered = getattr(first, "put_numbered", None)
 
+    def when_shared(self, begin: Callable[..., object]) -> None:
+        """Call `begin` once payloads go to shared memory, if the transport takes them in pieces."""
+        if self._latch is None and hasattr(self._all[0], "on_shared"):
+            self._all[0].on_shared = begin
+
     @property
     def matched(self) -> bool:
         """True if anybody listens to one of the keys."""
         return any(outlet.matched for outlet in self._all)
 
-    def sender(self, encode: Callable[[Any], bytes], attachment: Callable[[], bytes]) -> Callable[[Any], None] | None:
+    def sender(self, encode: Callable[[Any], Any], attachment: Callable[[], bytes]) -> Callable[[Any], None] | None:
         """Return a function that encodes and sends a message, if the one outlet has its own way; not after `add`."""
         make = getattr(self._all[0], "sender", None)
         return None if make is None or self._latch is not None else make(encode, attachment, self.lock)

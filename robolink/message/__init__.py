@@ -23,7 +23,7 @@ from robolink.message.annotations import (
     wstring,
 )
 from robolink.message.base import Message, message_type
-from robolink.message.cdr import decode, decoder, encode, encoder
+from robolink.message.cdr import buffers_encoder, decode, decoder, encode, encoder
 from robolink.message.convert import from_builtins, to_builtins
 from robolink.message.description import describe, type_hash, type_name
 from robolink.message.numbers import import_numpy_for
@@ -39,6 +39,7 @@ __all__ = [
     "Size",
     "action_type",
     "boolean",
+    "buffers_encoder",
     "byte",
     "char",
     "decode",

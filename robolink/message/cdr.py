@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import functools
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from robolink.exceptions import DecodeError, EncodeError, MessageError
@@ -31,7 +31,19 @@ def encoder(cls: type[Message]) -> Callable[[Any], bytes]:
 
     It raises EncodeError, whose text names the field, for a value that does not fit.
     """
-    source = WriterSource(message_type(cls))
+    return _writer(cls, WriterSource(message_type(cls)))
+
+
+@once_per_type
+def buffers_encoder(cls: type[Message]) -> Callable[[Any], Sequence[Any]]:
+    """Return the function that encodes a message of the class `cls` as buffers in a row: its arrays as they are.
+
+    Together they are what `encoder` makes of the message. It raises EncodeError as that does.
+    """
+    return _writer(cls, WriterSource(message_type(cls), apart=True))
+
+
+def _writer(cls: type[Message], source: WriterSource) -> Callable[[Any], Any]:
     text = source.text()
     names = {**source.constants, "HEAD": LITTLE, "fail": functools.partial(_encode_error, cls)}
     return _compile(text, names, f"<encode {cls.__ros_type__}>")

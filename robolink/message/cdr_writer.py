@@ -18,9 +18,13 @@ PADS = tuple(bytes(n) for n in range(8))
 
 
 class WriterSource:
-    """Source text of ``run(m) -> bytes``; `phase` is the offset mod 8 where it is known, else None and in ``o``."""
+    """Source text of ``run(m) -> bytes``; `phase` is the offset mod 8 where it is known, else None and in ``o``.
 
-    def __init__(self, cls: type[Message]) -> None:
+    With `apart` it returns a tuple or list of buffers instead, which follow each other.
+    """
+
+    def __init__(self, cls: type[Message], *, apart: bool = False) -> None:
+        self.apart = apart
         self.out = Lines()
         self.constants: dict[str, Any] = self.out.constants
         self.constants.update(PADS=PADS, array=array, bools=bools, fixed=fixed, instance=instance)
@@ -39,11 +43,12 @@ class WriterSource:
         if not self.chunks and self.phase == 0:  # all of it has a fixed size: one call, no list of parts
             codes, values = [code for code, _ in self.run], ", ".join(value for _, value in self.run)
             packer = self.out.constant("S", padded_with_head(codes))
-            self.out.add(f"return {packer}(HEAD, {values})")
+            made = f"{packer}(HEAD, {values})"
+            self.out.add(f"return ({made},)" if self.apart else f"return {made}")
         else:
             self._flush()
             parts = "parts" if self.joined is None else f"(HEAD, {', '.join(self.joined)})"
-            self.out.add(f"return b''.join({parts})")
+            self.out.add(f"return {parts}" if self.apart else f"return b''.join({parts})")
         start = ["def run(m):", "    try:"]
         if self.chunks and self.joined is None:
             start.append("        parts = [HEAD]; p = parts.append")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from robolink.constants import LARGEST_MESSAGE
@@ -37,7 +37,7 @@ make_sample: Callable[[tuple[bytes, bytes]], Sample] = functools.partial(tuple._
 """Fast constructor of Sample, in half the time of Sample(), whose `__new__` is Python: for once a message."""
 
 
-def refuse_giant(key: str, payload: bytes) -> None:
+def refuse_giant(key: str, payload: Sized) -> None:
     """Raise TransportError for a payload that every receiver would silently drop."""
     if len(payload) > LARGEST_PAYLOAD:
         raise TransportError(

@@ -252,6 +252,11 @@ class PoolLimit:
         self._own = next(new, "")
         self._next = 0.0 if self._own else float("inf")
 
+    def shares(self) -> bool:
+        """Return whether the session has a link through which memory is shared: it holds the other's small file."""
+        others = (each for each in self._held() if each.size < LARGEST_SESSION_FILE and each.path != self._own)
+        return bool(self._own) and any(others)
+
     def look(self) -> None:
         """Take no new pools from now on if enough are held, or /dev/shm gets full; cheap, to be called often."""
         now = self._now()

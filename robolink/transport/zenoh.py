@@ -27,6 +27,7 @@ from robolink.transport.gates import close_gate, make_gate
 from robolink.transport.joining import join, leave
 from robolink.transport.reach import Link, links_of
 from robolink.transport.shared_memory import PoolLimit
+from robolink.transport.shared_pool import Sharing
 from robolink.transport.zenoh_handles import Changes, ZenohToken, ZenohWatch, settled
 
 REUNION = SOUGHT_EVERY + 0.05
@@ -77,6 +78,7 @@ class ZenohTransport(Transport):
             self.leaves_machine, self.thinned = joined.leaves_machine, joined.thinned
             self._met_at = clocks.monotonic() + (REUNION if joined.holds_port else 0.0)
             self._pools = PoolLimit(before)
+            self._holdings.sharing = Sharing(self._pools.shares)
             self.session_id = str(self.session.info.zid())
             lifetime.watch_over(self)
 
@@ -156,8 +158,9 @@ class ZenohTransport(Transport):
         kind = type(arrived)
         if kind is _ZenohSample:  # the usual case first, and without calls: this is run once a message
             attachment, payload = arrived.attachment, arrived.payload
-            sample = make_sample((payload.to_bytes(), b"" if attachment is None else attachment.to_bytes()))
             shared = payload.as_shm()
+            copied = payload.to_bytes() if shared is None else bytes(shared)  # the latter is one plain copy
+            sample = make_sample((copied, b"" if attachment is None else attachment.to_bytes()))
             if shared is not None:
                 if not shared.is_valid():  # asked after the copy: it may happen during it
                     raise OverwrittenError(sample.attachment)

@@ -21,10 +21,9 @@ from robolink.transport import zenoh_declare as declare
 from robolink.transport.base import Sample, Sink, refuse_giant
 from robolink.transport.gates import close_gate
 from robolink.transport.network import reason
+from robolink.transport.pieces import LARGE, Pieces
+from robolink.transport.shared_pool import Sharing
 from robolink.transport.zenoh_declare import Publishers, is_matching, quietly
-
-LARGE = 32 * 1024
-"""Payload size in bytes from which it is cheaper to check for subscriptions first than to copy it for nobody."""
 
 MATCH_LASTS = 0.5
 """Time in seconds for which a subscription that was found is taken to be there still: the check takes 25-50 us."""
@@ -40,6 +39,8 @@ class Holdings:
         self.tokens: Counter[str] = Counter()
         """Tokens that are announced, and how often."""
         self._topics: dict[str, Topic] = {}
+        self.sharing: Sharing | None = None
+        """Memory that large payloads are written into; None where the session shares none."""
 
     def topic(self, key: str) -> Topic:
         """Return the one Topic of this key."""
@@ -134,7 +135,17 @@ class _Gone:
 class ZenohOutlet(Declared):
     """A publisher."""
 
-    __slots__ = ("_declare_remote", "_has_reported", "_matched_until", "_matcher", "_remote", "_topic", "_used", "key")
+    __slots__ = (
+        "_declare_remote",
+        "_has_reported",
+        "_matched_until",
+        "_matcher",
+        "_remote",
+        "_topic",
+        "_used",
+        "key",
+        "on_shared",
+    )
 
     def __init__(self, holdings: Holdings, key: str, publishers: Publishers) -> None:
         # First, since it may be shut from the moment on that the session has it.
@@ -142,22 +153,30 @@ class ZenohOutlet(Declared):
         self._used, self._matcher, self._declare_remote = publishers
         self._remote: Any = None
         self._has_reported, self._matched_until = False, 0.0
+        self.on_shared: Callable[[], object] | None = None
+        """Function that is called once when a payload was copied into shared memory: Pieces save the copy before."""
         super().__init__(holdings, [])
 
-    def put(self, payload: bytes, attachment: bytes) -> None:
-        """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants."""
+    def put(self, payload: bytes | Pieces, attachment: bytes) -> None:
+        """Send to every matching subscription. Raises TransportClosedError after close, TransportError for giants.
+
+        Pieces are of at least LARGE bytes.
+        """
         if len(payload) >= LARGE:
             self._put_large(payload, attachment)
             return
         if self._topic.sinks:
-            self._deliver_here(payload, attachment)
+            self._deliver_here(payload, attachment)  # type: ignore[arg-type] # bytes, being small
         try:  # `repeat` written out: this is run once a message
             self._used.put(payload, attachment=attachment)
         except zenoh.ZError as error:
             raise self._holdings.failure(self.key, error) from None
 
     def sender(
-        self, encode: Callable[[Any], bytes], attachment: Callable[[], bytes], lock: AbstractContextManager[object]
+        self,
+        encode: Callable[[Any], bytes | Pieces],
+        attachment: Callable[[], bytes],
+        lock: AbstractContextManager[object],
     ) -> Callable[[Any], None]:
         """Return a function that encodes a message and sends it; in one frame where it is small and goes elsewhere.
 
@@ -180,23 +199,38 @@ class ZenohOutlet(Declared):
 
         return send
 
-    def repeat(self, payload: bytes, attachment: bytes) -> None:
+    def repeat(self, payload: Any, attachment: bytes) -> None:
         """Send a message that the subscriptions of this session, but for latched ones, have already."""
         try:
             self._used.put(payload, attachment=attachment)
         except zenoh.ZError as error:
             raise self._holdings.failure(self.key, error) from None
 
-    def _put_large(self, payload: bytes, attachment: bytes) -> None:
+    def _put_large(self, payload: bytes | Pieces, attachment: bytes) -> None:
+        size = len(payload)
         refuse_giant(self.key, payload)
-        if len(payload) >= heap.LARGE:
-            heap.note(len(payload))
-        self._deliver_here(payload, attachment)
+        if size >= heap.LARGE:
+            heap.note(size)
+        if self._topic.sinks:
+            payload = bytes(payload)
+            self._deliver_here(payload, attachment)
         begin = clocks.monotonic()
         if self._worth_a_copy(begin):
-            self.repeat(payload, attachment)
+            shared = self._shared(payload)
+            self.repeat(bytes(payload) if shared is None else shared, attachment)
             if clocks.monotonic() - begin >= LONGEST_WAIT:
-                self._tell_of_no_room(len(payload))
+                self._tell_of_no_room(size)
+
+    def _shared(self, payload: bytes | Pieces) -> Any:
+        """Return the payload in shared memory; None where Zenoh has to copy it itself."""
+        sharing = self._holdings.sharing
+        if sharing is None or self._used is not self._matcher:  # what is retained would hold its place for ever
+            return None
+        shared = sharing.filled(payload)
+        if shared is not None and self.on_shared is not None:
+            on_shared, self.on_shared = self.on_shared, None
+            on_shared()
+        return shared
 
     def _deliver_here(self, payload: bytes, attachment: bytes) -> None:
         sample = Sample(payload, attachment)

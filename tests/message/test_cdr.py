@@ -22,6 +22,7 @@ from robolink.message import (
     Sequence,
     Size,
     boolean,
+    buffers_encoder,
     byte,
     char,
     decode,
@@ -208,6 +209,7 @@ def check_against_the_oracle(message: Any) -> None:
     data = encode(message)
     cls = type(message)
     assert data == oracle_bytes(message), type_name(cls)
+    assert b"".join(buffers_encoder(cls)(message)) == data, type_name(cls)
     assert decode(cls, data) == message
     assert decode(cls, oracle_bytes(message, little_endian=False)) == message
     theirs = STORE.deserialize_cdr(data, oracle_name(cls))
