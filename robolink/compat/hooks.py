@@ -101,8 +101,8 @@ def workspace_types(fullname: str) -> Fill | None:
     """Return the function that fills the module `fullname`, `my_msgs` or `my_msgs.msg`; None if nobody has it.
 
     Workspaces and entry points are read for a name that is installed nowhere, so that imports stay fast; and not for
-    those that libraries look for in vain: `pickle` tries `org.python.core`, `platform` `java.lang`, and msgspec, which
-    workspaces need, `typing_extensions`.
+    those that libraries look for in vain: `pickle` tries `org.python.core`, `platform` `java.lang`, and msgspec
+    `typing_extensions`.
     """
     top, dot, inner = fullname.partition(".")
     kind, _, private = inner.partition(".")

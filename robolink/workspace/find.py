@@ -15,8 +15,6 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from msgspec.structs import replace
-
 from robolink.exceptions import NotFoundError, nearest
 from robolink.system.files import expanded, is_file
 from robolink.workspace.installed import COLCON
@@ -66,7 +64,7 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
             return NodeSource(source.name, source.path, attribute)
     added = next((NODES.get(each) for each in NODES.added() if canonical(each) == requested), None)
     if added is not None:
-        return replace(added, attribute=attribute or added.attribute)
+        return added._replace(attribute=attribute or added.attribute)
     raise _no_node(file, workspace)
 
 

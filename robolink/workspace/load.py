@@ -11,8 +11,6 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from msgspec.structs import replace
-
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.system.files import LONGEST_SOURCE, read_plain
 from robolink.workspace.find import workspace_of
@@ -91,7 +89,7 @@ def _in_package(source: NodeSource, path: Path, tree: ast.Module) -> NodeSource:
     root = _above_package(path.parent)
     root = root if root != path.parent else path.parent.parent  # a package without an __init__.py
     names = [*path.parent.relative_to(root).parts, *([path.stem] if path.stem != "__init__" else [])]
-    return replace(source, module=".".join(names), root=root)
+    return source._replace(module=".".join(names), root=root)
 
 
 def own_process_needed(source: NodeSource) -> str:

@@ -21,8 +21,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
 from robolink.exceptions import NotFoundError, RobolinkError, nearest
 from robolink.extensions import ExtensionError, Registry, module_path
 from robolink.system.patterns import late
@@ -68,7 +66,7 @@ def _own_nodes() -> dict[str, NodeSource]:
     return {each.name: each for each in nodes_in(built_in_workspace())}
 
 
-NODES = Registry("robolink.nodes", _own_nodes, lambda entry: replace(source_at(entry.value), name=entry.name))
+NODES = Registry("robolink.nodes", _own_nodes, lambda entry: source_at(entry.value)._replace(name=entry.name))
 """Registry of the nodes: sources by name."""
 
 
@@ -102,7 +100,7 @@ def program(package: str, name: str) -> NodeSource | None:
     """Return the source of the executable `name` that `package` has here; None if there is none."""
     name = canonical(name).removesuffix(".py")
     found = _source(f"{canonical(package)}.{name}")
-    return replace(found, name=name) if found is not None and found.attribute else found
+    return found._replace(name=name) if found is not None and found.attribute else found
 
 
 def component(plugin: str) -> NodeSource | None:
@@ -112,7 +110,7 @@ def component(plugin: str) -> NodeSource | None:
     True
     """
     found = _source(plugin)
-    return None if found is None else replace(found, name=_WORDS.sub("_", plugin.rpartition("::")[2]).lower())
+    return None if found is None else found._replace(name=_WORDS.sub("_", plugin.rpartition("::")[2]).lower())
 
 
 def sources_of(package: str) -> dict[str, NodeSource]:

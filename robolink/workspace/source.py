@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TypeAlias
-
-import msgspec
+from typing import NamedTuple, TypeAlias
 
 Folder: TypeAlias = "str | os.PathLike[str] | None"
 
 
-class NodeSource(msgspec.Struct, frozen=True):
+class NodeSource(NamedTuple):
     """Source of a node, `name`: the file `path` and its `attribute` ('' for the only node).
 
     A file of a package is imported as `module`, with `root` on `sys.path`, so that it can import its neighbours. A file
