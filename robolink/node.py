@@ -12,12 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 from robolink.arguments.command_line import Arguments, parse_arguments
 from robolink.arguments.remapping import RemapKind, resolve_name
 from robolink.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from robolink.client import BaseClient
-from robolink.client import Client as Client
 from robolink.clock import Clock, ROSClock
 from robolink.context import Context
-from robolink.endpoint_info import ServiceEndpointInfo as ServiceEndpointInfo
-from robolink.endpoint_info import TopicEndpointInfo as TopicEndpointInfo
 from robolink.event_handler import PublisherEventCallbacks as PublisherEventCallbacks
 from robolink.event_handler import SubscriptionEventCallbacks as SubscriptionEventCallbacks
 from robolink.exceptions import NodeNameNonExistentError as NodeNameNonExistentError
@@ -27,7 +23,6 @@ from robolink.expand_topic_name import expand_topic_name
 from robolink.graph.action_names import actions
 from robolink.graph.endpoint import Disagreements, Owner
 from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
-from robolink.guard_condition import GuardCondition as GuardCondition
 from robolink.impl.rcutils_logger import RcutilsLogger
 from robolink.interfaces.rcl_interfaces.msg import ListParametersResult, Log, ParameterEvent, ParameterValue
 from robolink.interfaces.rcl_interfaces.msg import ParameterDescriptor as ParameterDescriptor
@@ -56,20 +51,39 @@ from robolink.running.entity import Entity
 from robolink.service import Service as Service
 from robolink.subscription import Subscription as Subscription
 from robolink.task import Future
+from robolink.text.suggestions import lazily
 from robolink.time_source import TimeSource
-from robolink.timer import Rate as Rate
-from robolink.timer import Timer as Timer
-from robolink.timer import period_ns
 from robolink.type_description_service import TypeDescriptionService
 from robolink.type_support import MsgT as MsgT
 from robolink.utilities import get_default_context
-from robolink.waitable import Waitable
 from robolink.wire import EndpointKind, NodeToken
 
 if TYPE_CHECKING:
+    from robolink.client import BaseClient
+    from robolink.client import Client as Client
+    from robolink.endpoint_info import ServiceEndpointInfo as ServiceEndpointInfo
+    from robolink.endpoint_info import TopicEndpointInfo as TopicEndpointInfo
+    from robolink.guard_condition import GuardCondition as GuardCondition
     from robolink.qos_overriding_options import QoSOverridingOptions
     from robolink.subscription_content_filter_options import ContentFilterOptions
+    from robolink.timer import Rate as Rate
+    from robolink.timer import Timer as Timer
+    from robolink.waitable import Waitable as Waitable
 
+__getattr__, __dir__ = lazily(  # what many nodes do without
+    __name__,
+    {
+        "Client": "client",
+        "GuardCondition": "guard_condition",
+        "Rate": "timer",
+        "ServiceEndpointInfo": "endpoint_info",
+        "Timer": "timer",
+        "TopicEndpointInfo": "endpoint_info",
+        "Waitable": "waitable",
+    },
+    (),
+    "robolink",
+)
 MsgType = TypeVar("MsgType")  # names that programs import from here
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
@@ -1074,6 +1088,8 @@ class Node(BaseNode):
             MessageError: (a ValueError) if `srv_type` is not a service class.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
+        from robolink.client import Client  # late, as timers are: many nodes have none
+
         group = callback_group or self._default_callback_group
         return make_client(self, Client, srv_type, srv_name, qos_profile, group)
 
@@ -1100,6 +1116,8 @@ class Node(BaseNode):
             TypeError: if the callback cannot be called.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
+        from robolink.timer import Timer, period_ns
+
         group = callback_group or self._default_callback_group
         period = period_ns(timer_period_sec)
         timer = Timer(callback, group, period, clock or self._clock, context=self._context, autostart=autostart)
@@ -1117,6 +1135,8 @@ class Node(BaseNode):
         Raises:
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
+        from robolink.guard_condition import GuardCondition
+
         group = callback_group or self._default_callback_group
         return self._entity_store_.add(
             GuardCondition(callback, group, context=self._context), self._entity_store_.guards
@@ -1133,6 +1153,8 @@ class Node(BaseNode):
             ValueError: if the frequency is not above 0.
             InvalidHandle: (a RuntimeError) if the node has been destroyed.
         """
+        from robolink.timer import Rate
+
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         timer = self.create_timer(1.0 / frequency, _until_its_rate, callback_group=self._rate_group, clock=clock)

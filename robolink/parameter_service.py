@@ -14,7 +14,6 @@ from robolink.node_parts.request_limit import Refusal, look_at, no_room
 from robolink.parameter import Parameter
 from robolink.qos import qos_profile_parameters
 from robolink.system.terminal import shown
-from robolink.text.tracebacks import formatted
 
 if TYPE_CHECKING:
     from robolink.interfaces.rcl_interfaces import srv
@@ -152,6 +151,8 @@ def _refused(reason: str) -> SetParametersResult:
 
 def _failed(node: ParameterNode, parameters: Sequence[Parameter[Any]], error: Exception) -> SetParametersResult:
     """Answer for an exception while parameters were set; where it came after that, they stay set."""
+    from robolink.text.tracebacks import formatted  # late: few callbacks fail
+
     text = shown(f"{type(error).__name__}: {error}", 200)
     node.get_logger().error(f"a request to set parameters failed:\n{formatted(error)}")
     is_set = all(node.get_parameter_or(each.name) is each for each in parameters)

@@ -12,7 +12,6 @@ from typing import Any, Protocol
 
 from robolink.exceptions import ExternalShutdownException, InterruptedByUser
 from robolink.system import exit_code
-from robolink.text.tracebacks import misspelt_field
 
 
 class Interruptible(Protocol):
@@ -121,6 +120,8 @@ def _end_quietly() -> None:
             exit_code.note(code)
             exit_code.write_files()
             raise SystemExit(code)
+        from robolink.text.tracebacks import misspelt_field  # late: few programs end by such an error
+
         field = misspelt_field(error)
         if field:
             error.args = (f"{error}{field}",)

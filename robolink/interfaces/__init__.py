@@ -17,7 +17,6 @@ from typing import Any, Protocol
 from robolink.exceptions import MessageError, NotFoundError
 from robolink.interfaces.standard import added_type, added_types, standard_type, types_of
 from robolink.interfaces.standard import packages as standard_packages
-from robolink.text import advice
 
 __all__ = ["Source", "add_source", "find", "find_announced", "is_named", "names", "register", "remove_source"]
 
@@ -102,9 +101,6 @@ def homes_of(short: str) -> list[str]:
     found = [f"{package}.{kind}" for kind in KINDS for package, types in _types(kind).items() if short in types]
     usual = [package for group in FIRST for package in group]
     return sorted(found, key=lambda each: each.partition(".")[0] not in usual)
-
-
-advice.type_homes = homes_of
 
 
 def register(interface: type[Any]) -> None:

@@ -5,19 +5,19 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from robolink.client import BaseClient
 from robolink.event_handler import EventHandler, with_callbacks
-from robolink.guard_condition import GuardCondition
 from robolink.node_parts.losses import LossReports
 from robolink.publisher import Publisher
 from robolink.running.entity import Entity
 from robolink.service import Service
 from robolink.subscription import Subscription
-from robolink.timer import Timer
-from robolink.waitable import Waitable
 
 if TYPE_CHECKING:
+    from robolink.client import BaseClient
+    from robolink.guard_condition import GuardCondition
     from robolink.node_parts.ports import OwningNode
+    from robolink.timer import Timer
+    from robolink.waitable import Waitable
 
 EntityT = TypeVar("EntityT", bound=Entity)
 

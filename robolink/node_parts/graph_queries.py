@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from robolink.endpoint_info import EndpointTypeEnum, ServiceEndpointInfo, TopicEndpointInfo
+from typing import TYPE_CHECKING
+
 from robolink.exceptions import NodeNameNonExistentError, nearest
 from robolink.graph.graph import Graph, NamesAndTypes, names_and_types
 from robolink.qos import resolved
 from robolink.text.names import join
-from robolink.type_hash import TypeHash
 from robolink.wire import EndpointKind, EndpointToken
+
+if TYPE_CHECKING:
+    from robolink.endpoint_info import ServiceEndpointInfo, TopicEndpointInfo
 
 
 def of_node(graph: Graph, name: str, namespace: str, kind: EndpointKind) -> NamesAndTypes:
@@ -23,13 +26,16 @@ def of_node(graph: Graph, name: str, namespace: str, kind: EndpointKind) -> Name
 
 def endpoints_of_topic(graph: Graph, topic: str, kind: EndpointKind) -> list[TopicEndpointInfo]:
     """Return the publishers or the subscriptions of a topic, given by its full name."""
+    from robolink.endpoint_info import EndpointTypeEnum, TopicEndpointInfo  # late: few nodes ask
+    from robolink.type_hash import TypeHash
+
     return [
         TopicEndpointInfo(
             node_name=each.node_name,
             node_namespace=each.namespace,
             topic_type=each.type_name,
             topic_type_hash=TypeHash.from_text(each.type_hash),
-            endpoint_type=_ENDS[kind],
+            endpoint_type=EndpointTypeEnum[_ENDS[kind]],
             endpoint_gid=list(gid),
             qos_profile=resolved(each.qos),  # a copy, for the caller to change
         )
@@ -44,6 +50,9 @@ def endpoints_of_service(graph: Graph, service: str, kind: EndpointKind) -> list
 
 def service_endpoint(gid: bytes, token: EndpointToken) -> ServiceEndpointInfo:
     """Return the description of a server or client."""
+    from robolink.endpoint_info import EndpointTypeEnum, ServiceEndpointInfo
+    from robolink.type_hash import TypeHash
+
     return ServiceEndpointInfo(
         node_name=token.node_name,
         node_namespace=token.namespace,
@@ -51,14 +60,14 @@ def service_endpoint(gid: bytes, token: EndpointToken) -> ServiceEndpointInfo:
         service_type_hash=TypeHash.from_text(token.type_hash),
         qos_profiles=[resolved(token.qos)],
         endpoint_gids=[list(gid)],
-        endpoint_type=_ENDS[token.kind],
+        endpoint_type=EndpointTypeEnum[_ENDS[token.kind]],
         endpoint_count=1,
     )
 
 
 _ENDS = {
-    EndpointKind.PUBLISHER: EndpointTypeEnum.PUBLISHER,
-    EndpointKind.SUBSCRIPTION: EndpointTypeEnum.SUBSCRIPTION,
-    EndpointKind.CLIENT: EndpointTypeEnum.CLIENT,
-    EndpointKind.SERVICE: EndpointTypeEnum.SERVER,
+    EndpointKind.PUBLISHER: "PUBLISHER",
+    EndpointKind.SUBSCRIPTION: "SUBSCRIPTION",
+    EndpointKind.CLIENT: "CLIENT",
+    EndpointKind.SERVICE: "SERVER",
 }

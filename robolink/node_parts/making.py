@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from robolink.client import BaseClient
 from robolink.publisher import Publisher
 from robolink.qos import QoSProfile, as_profile
 from robolink.service import Service
@@ -14,6 +13,7 @@ from robolink.type_support import check_is_valid_msg_type, check_is_valid_srv_ty
 
 if TYPE_CHECKING:
     from robolink.callback_groups import CallbackGroup
+    from robolink.client import BaseClient
     from robolink.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
     from robolink.node_parts.ports import MakingNode
     from robolink.qos_overriding_options import QoSOverridingOptions
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PublisherT = TypeVar("PublisherT", bound=Publisher[Any])
 SubscriptionT = TypeVar("SubscriptionT", bound=Subscription[Any])
 ServiceT = TypeVar("ServiceT", bound=Service)
-ClientT = TypeVar("ClientT", bound=BaseClient)
+ClientT = TypeVar("ClientT", bound="BaseClient")
 
 
 def make_publisher(

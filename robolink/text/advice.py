@@ -12,9 +12,6 @@ from robolink.exceptions import RobolinkError, imported_as
 from robolink.system.patterns import late
 from robolink.text.callbacks import miscalled
 
-type_homes: Callable[[str], list[str]] = lambda name: []  # noqa: E731 - replaced by whoever knows the types
-"""Function that returns the modules with a message, service or action of this name, as ROS 2 calls them."""
-
 _MODULES = {"Node": ("robolink", "rclpy.node"), "rclpy": ("", ""), "robolink": ("", "")}
 """Modules of names that are not types: in a program with robolink's names, and in one with rclpy's; '' imports it."""
 
@@ -45,7 +42,8 @@ def home_of(name: str, program: str = "") -> str:
     if name in _MODULES:
         module = _MODULES[name][ros_names]
         return f"from {module} import {name}" if module else f"import {name}"
-    homes = type_homes(name)
+    types = sys.modules.get("robolink.interfaces")  # above this floor; a program without it uses no types
+    homes: list[str] = types.homes_of(name) if types is not None else []
     if homes:
         return f"from {'' if ros_names else 'robolink.interfaces.'}{homes[0]} import {name}"
     return f"import {name}" if name in sys.stdlib_module_names else ""

@@ -9,7 +9,6 @@ from types import FrameType, ModuleType
 from typing import Any
 
 from robolink.exceptions import RobolinkError, nearest
-from robolink.text.advice import home_of
 
 
 class LackingNameError(RobolinkError):
@@ -20,6 +19,8 @@ class LackingNameError(RobolinkError):
         super().__init__(full)
 
     def __str__(self) -> str:
+        from robolink.text.advice import home_of  # late: most programs lack no name
+
         module, _, name = self.full.rpartition(".")
         statement = "" if self.hint else home_of(name, module)
         hint = self.hint or (f"write `{statement}`" if statement else "")
@@ -69,19 +70,21 @@ def imports_a_name(frame: FrameType) -> bool:
 
 
 def lazily(
-    package: str, homes: Mapping[str, str], rooms: Collection[str]
+    package: str, homes: Mapping[str, str], rooms: Collection[str], within: str = ""
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return the `__getattr__` and `__dir__` of a package whose names are imported lazily, at their first use.
+    """Return the `__getattr__` and `__dir__` of a package or module whose names are imported at their first use.
 
-    `homes` has the module of each name; `rooms` are the modules that are available as attributes, too.
+    `homes` has the module of each name; `rooms` are the modules that are available as attributes, too. They are in the
+    package `within`, by default in `package` itself.
     """
+    within = within or package
 
     def get(name: str) -> Any:
         if name in rooms:
-            return importlib.import_module(f"{package}.{name}")
+            return importlib.import_module(f"{within}.{name}")
         if name not in homes:
             raise lacking(package, name, lambda: [*homes, *rooms], sys._getframe(1))
-        value = getattr(importlib.import_module(f"{package}.{homes[name]}"), name)
+        value = getattr(importlib.import_module(f"{within}.{homes[name]}"), name)
         setattr(sys.modules[package], name, value)
         return value
 

@@ -19,7 +19,6 @@ from robolink.networks.request import (
 )
 from robolink.networks.settings import as_ros, client, settings
 from robolink.system import clocks
-from robolink.system.files import expanded, is_file
 from robolink.system.terminal import shown
 from robolink.transport import shared_memory
 from robolink.transport.reach import as_json, mode_of
@@ -151,6 +150,8 @@ def _needs_no_name(request: NetworkRequest) -> bool:
     """True for networks that are neither a host nor a name of the file of networks."""
     if request.origin == OVERRIDE or request.value in NAMES or ENDPOINT.fullmatch(request.value):
         return True
+    from robolink.system.files import is_file  # late: usually it is a name of this table
+
     return is_file(file_of(request.value))
 
 
@@ -232,6 +233,8 @@ def file_of(value: str) -> Path:
     >>> file_of("file:///C:/robot.json5").as_posix()
     'C:/robot.json5'
     """
+    from robolink.system.files import expanded
+
     return expanded(re.sub(r"^file://(/(?=[A-Za-z]:))?", "", value))
 
 
