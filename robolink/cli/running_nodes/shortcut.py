@@ -47,7 +47,7 @@ def fork_server(descriptor: int) -> int:
     # forked collects its own: `pass_over_imports` is called there.
     gc.disable()
     import robolink.transport.zenoh  # noqa: F401
-    from robolink import node, spinning  # noqa: F401
+    from robolink import client, node, spinning, timer  # noqa: F401
     from robolink.cli.running_nodes import runner
     from robolink.supervisor.processes import fork_server
 
