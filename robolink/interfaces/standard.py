@@ -200,9 +200,13 @@ def stated(cls: type[Any]) -> Stated | None:
     type_name = str(cls.__ros_type__)
     if _known(type_name) is not cls or type_name.partition("/")[0] not in packages():
         return None
-    _, _, rest = _text(HASHES).partition(f"\n{type_name} ")
-    words = rest.partition("\n")[0].split(" ")
-    return Stated(words[0], words[-1] == "numpy") if words[0] else None
+    with open(HASHES, "rb") as file:  # noqa: PTH123
+        lines = file.read()  # not retained, nor decoded: that takes 40 us of the 55
+    begin = lines.find(f"\n{type_name} ".encode())
+    if begin < 0:
+        return None
+    _, type_hash, *more = lines[begin : lines.index(b"\n", begin + 1)].decode().split()
+    return Stated(type_hash, "numpy" in more)
 
 
 # Where they are

@@ -44,7 +44,6 @@ def receive(message):
 publishers = [node.create_publisher(cls, f"topic_{at}", 10) for at, cls in enumerate(types)]
 for at, cls in enumerate(types):
     node.create_subscription(cls, f"topic_{at}", receive, 10)
-known = set(sys.modules)
 
 
 def publish():
@@ -55,6 +54,7 @@ def publish():
 
 
 node.create_timer(0.1, publish)
+known = set(sys.modules)
 while len(got) < len(types):
     executor.spin_once(timeout_sec=1.0)
 print(len(got), sorted(set(sys.modules) - known), "numpy" in sys.modules)
