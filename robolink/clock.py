@@ -150,6 +150,8 @@ class Clock:
         self._base: TimeBase = time_base or get_defaults().time
         self._read = self._base.steady if clock_type is ClockType.STEADY_TIME else self._base.now
         self._jumps: list[JumpHandle] = []
+        self._active = False
+        """True while the time comes from /clock, and not from `_read`."""
 
     @property
     def clock_type(self) -> ClockType:
@@ -285,7 +287,6 @@ class ROSClock(Clock):
 
     def __init__(self, *, clock_type: ClockType = ClockType.ROS_TIME, time_base: TimeBase | None = None) -> None:
         super().__init__(clock_type=ClockType.ROS_TIME, time_base=time_base)
-        self._active = False
         self._override = 0
         self._watchers: dict[ClockWatcher, None] = {}  # a set that keeps its order, so that runs repeat
 

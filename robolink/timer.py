@@ -139,7 +139,9 @@ class Timer(Entity):
 
         The next deadline is a whole number of periods after the last one.
         """
-        now = self.clock.now_ns()
+        clock = self.clock
+        read = clock.now_ns if clock._active else clock._read  # usually a call less
+        now = read()
         if self._canceled or self._destroyed:
             return NOTHING
         if now < self.next_call_ns:  # the executor waits by another clock, which may be a little ahead
@@ -153,7 +155,7 @@ class Timer(Entity):
         queue = self._queue_
         if queue is not None:
             self.version += 1
-            left = self.clock.wait_ns(self.next_call_ns, now)
+            left = clock.wait_ns(self.next_call_ns, now) if clock._active else self.next_call_ns - now
             if left is not None:
                 schedule = queue.schedule  # for Python 3.11 a function in an attribute, no method
                 schedule(self, left)
