@@ -13,7 +13,7 @@ from typing import NamedTuple
 import zenoh
 
 from robolink.exceptions import TransportError
-from robolink.networks.request import FIRST_PORT, ROS_ROUTER, checked_domain
+from robolink.networks.request import FIRST_PORT, OVERRIDE, ROS_ROUTER, checked_domain
 from robolink.networks.settings import OFTEN
 from robolink.system import clocks
 from robolink.transport import lifetime, network, port_sharing
@@ -37,6 +37,8 @@ class Joined(NamedTuple):
     holds_port: bool = False
     leaves_machine: bool = False
     """True if others may be met on other machines, at addresses that change."""
+    has_own_settings: bool = False
+    """True if no keys, and no access control of the user's, name what may be declared."""
     thinned: list[str] | None = None
     """Key expressions of the topics of which nothing is sent again after a cut; None if nothing at all is."""
 
@@ -78,7 +80,8 @@ def join(
         if found.meets and within.listens:  # not if it goes nowhere, its certificate having ended
             joined = _meet(port, lambda holds: zenoh.open(load(True) if holds else config), within)
             network.await_host(joined.session, found)
-            return joined._replace(leaves_machine=within.leaves_machine, thinned=thinned)
+            has_own = found.secure is None and not environ.get(OVERRIDE)
+            return joined._replace(leaves_machine=within.leaves_machine, thinned=thinned, has_own_settings=has_own)
         from robolink.transport import certificates
 
         if wrong := certificates.faults(config):

@@ -28,6 +28,7 @@ from robolink.transport.joining import join, leave
 from robolink.transport.reach import Link, links_of
 from robolink.transport.shared_memory import PoolLimit
 from robolink.transport.shared_pool import Sharing
+from robolink.transport.zenoh_groups import Groups
 from robolink.transport.zenoh_handles import Changes, ZenohToken, ZenohWatch, settled
 
 REUNION = SOUGHT_EVERY + 0.05
@@ -76,6 +77,7 @@ class ZenohTransport(Transport):
             joined = join(domain, network, dict(os.environ if environ is None else environ), secure, named)
             self.session, self._claim = joined.session, joined.claim
             self.leaves_machine, self.thinned = joined.leaves_machine, joined.thinned
+            self._may_group, self._groups = joined.has_own_settings, Groups()
             self._met_at = clocks.monotonic() + (REUNION if joined.holds_port else 0.0)
             self._pools = PoolLimit(before)
             self._holdings.sharing = Sharing(self._pools.shares)
@@ -96,6 +98,10 @@ class ZenohTransport(Transport):
 
     def serve(self, key: str, sink: Sink) -> Handle:
         """Call `sink` for every call on `key`; `accept` turns what it gets into a Query."""
+        grouped = self._groups.serve(key, sink, self._serve) if self._may_group else None
+        return grouped or self._serve(key, sink)
+
+    def _serve(self, key: str, sink: Sink) -> Handle:
         gate = make_gate(sink)
         return handles.Declared(self._holdings, [self._make(key, declare.declare_server, key, gate)], gate)
 
