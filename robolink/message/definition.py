@@ -136,7 +136,7 @@ class _Reader:
         for number, line in enumerate(lines, 1):
             if len(line) > LONGEST_LINE:
                 self.fail(number, 1, f"a line of {len(line)} characters (at most {LONGEST_LINE})")
-            stray = NO_TEXT.search(line)
+            stray = None if line.isascii() and "\0" not in line else NO_TEXT.search(line)
             if stray is not None:
                 what = "a NUL character" if stray[0] == "\0" else f"half a character ({stray[0]!r})"
                 self.fail(number, stray.start() + 1, f"{what}: this is not a text file")

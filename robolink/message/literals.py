@@ -79,7 +79,8 @@ def _one(kind: FieldType, text: str) -> Any:
 
 
 def _integer(base: str, text: str) -> int:
-    if len(text) > LONGEST_NUMBER or not INTEGER.fullmatch(text):
+    is_plain = text.isascii() and text.isdecimal()  # most are: no pattern is compiled for them
+    if len(text) > LONGEST_NUMBER or not (is_plain or INTEGER.fullmatch(text)):
         raise ValueError(f"'{shown(text)}' is not {with_article(base)}: write a whole number such as 10, -3 or 0x1F")
     try:
         return int(text)  # leading zeros do not make it octal

@@ -57,4 +57,4 @@ def split_type_name(name: str) -> tuple[str, str, str]:
 
 def is_part(kind: str, short: str) -> bool:
     """True if a type is the part of a service or action, by its kind and name: ``srv``, ``SetBool_Request``."""
-    return kind != "msg" and len(short) <= LONGEST and re.fullmatch(PART, short) is not None
+    return kind != "msg" and "_" in short and len(short) <= LONGEST and re.fullmatch(PART, short) is not None
