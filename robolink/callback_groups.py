@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import threading
+import functools
 import weakref
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,7 @@ class CallbackGroup:
     _acquire_: Callable[[bool], bool] | None = None
     """Function in C that, called with False, is `can_execute` and `beginning_execution` in one, where there is one."""
 
-    _release_: Callable[[], None] | None = None
+    _release_: Callable[[], object] | None = None
     """Function in C that is `ending_execution`, where there is one."""
 
     def __init__(self) -> None:
@@ -62,20 +62,22 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def __init__(self) -> None:
         super().__init__()
-        self._busy = threading.Lock()
+        # In place of a lock, whose two calls take half as long again: one thread takes what is in it, and puts it back.
+        self._free = {True: True}
         if type(self) is MutuallyExclusiveCallbackGroup:
-            self._acquire_, self._release_ = self._busy.acquire, self._busy.release
+            self._acquire_ = functools.partial(self._free.pop, True)  # the argument is what is returned if it is taken
+            self._release_ = functools.partial(self._free.setdefault, True, True)
 
     def can_execute(self, entity: Any) -> bool:
         """True if no callback of the group runs, that of `entity` or another."""
-        return not self._busy.locked()
+        return bool(self._free)
 
     def beginning_execution(self, entity: Any) -> bool:
         """Reserve the group for `entity`, whose callback is to run; False if another one runs."""
-        return self._busy.acquire(blocking=False)
+        return self._free.pop(True, False)
 
     def ending_execution(self, entity: Any) -> None:
         """Release the group, which `entity` had reserved, for the next callback."""
-        if not self._busy.locked():
+        if self._free:
             raise AssertionError("no callback of this group runs")  # as in rclpy
-        self._busy.release()
+        self._free[True] = True

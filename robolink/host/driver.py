@@ -143,7 +143,7 @@ class HostDriver:
         run(*found)
         return True
 
-    def _has_run(self, entity: Entity, outcome: Any, took: bool) -> bool:
+    def _has_run(self, entity: Entity, outcome: Any) -> bool:
         """Go on after the turn of an entity that was ready alone, by its outcome; False if no callback was run."""
         if outcome is not HELD and outcome is not NOTHING:
             if isinstance(outcome, CoroutineType):
@@ -151,8 +151,6 @@ class HostDriver:
             return True
         if outcome is HELD:
             self._queue.hold_back(entity)
-        else:
-            self._queue._took = took
         self._stepper, self.inbox.is_free = None, self.is_lent
         self._check_end()
         return False
@@ -206,10 +204,10 @@ def _step(driver: HostDriver) -> Callable[[Runner], None]:
             # A round of one, as usual; without the lock: one thread runs at a time, and what arrives takes none either.
             if len(ready) == 1 and not blocked and not turns and driver._run is None:
                 entity = ready.popleft()
-                took = queue._took
-                queue._ran_tasks, queue._took, inbox.is_free, driver._stepper = False, True, False, runner
+                queue._ran_tasks, queue._took = False, True
+                inbox.is_free, driver._stepper = False, runner
                 outcome = entity.turn()
-                has_run = outcome is None or driver._has_run(entity, outcome, took)
+                has_run = outcome is None or driver._has_run(entity, outcome)
             else:
                 has_run = driver._take_and_run(runner)
         except BaseException as error:  # noqa: BLE001 - whoever spins meets it
