@@ -23,6 +23,9 @@ MANY = 20
 _set_force, _set_torque = (vars(pymunk.Body)[name].fset for name in ("force", "torque"))
 """Setters of pymunk's Body: half the time of an assignment, which passes through a `__setattr__` in Python."""
 
+_angle, _velocity, _turn = (vars(pymunk.Body)[name].fget for name in ("angle", "velocity", "angular_velocity"))
+"""Getters of pymunk's Body: Python 3.11 calls a function faster than that of a property."""
+
 
 class Member(NamedTuple):
     """A robot's body, its own motion, and the errors of its odometry."""
@@ -42,6 +45,8 @@ class Fleet:
         self._bodies = BodyColumns(space, ())
         self._columns: _Columns | None = None
         self._changed = False
+        self._states: dict[pymunk.Body, tuple[float, float, float, float]] = {}
+        """Angles and velocities of bodies that were read since they moved."""
 
     def add(self, member: Member) -> None:
         """Add a robot whose body is in the space."""
@@ -70,11 +75,18 @@ class Fleet:
         """Return a robot's true speeds."""
         if self._columns is not None:
             return self._columns.twists(self._bodies)[self._rows[member.body]]
-        body = member.body
-        return Velocity(*speeds(FLOATS, member.motion.dt, body.angle, *body.velocity, body.angular_velocity))
+        return Velocity(*speeds(FLOATS, member.motion.dt, *self._state(member.body)))
+
+    def _state(self, body: pymunk.Body) -> tuple[float, float, float, float]:
+        """Return the angle, velocity along x and y, and angular velocity of a body."""
+        found = self._states.get(body)
+        if found is None:
+            found = self._states[body] = (_angle(body), *_velocity(body), _turn(body))
+        return found
 
     def moved(self) -> None:
         """Note that the bodies have made a step, or that one of them was put elsewhere."""
+        self._states.clear()
         if self._columns is not None:
             self._columns.moved()
 
@@ -90,6 +102,7 @@ class Fleet:
     def rest(self, member: Member) -> None:
         """Stop a robot that has been put elsewhere."""
         self._disband()
+        self._states.clear()
         motion = member.motion
         motion.ramp_v = motion.ramp_s = motion.ramp_w = 0.0
         motion.vx = motion.vy = motion.v = motion.s = motion.w = 0.0
@@ -103,8 +116,7 @@ class Fleet:
             return
         if not self._bodies.batched:
             for body, motion, errors in self._members:
-                (vx, vy), w = body.velocity, body.angular_velocity
-                force_x, force_y, torque = _advanced(motion, errors, (body.angle, vx, vy, w), step)
+                force_x, force_y, torque = _advanced(motion, errors, self._state(body), step)
                 _set_force(body, (force_x, force_y))
                 _set_torque(body, torque)
             return
