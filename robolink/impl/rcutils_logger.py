@@ -96,16 +96,18 @@ class RcutilsLogger:
         """
         if severity < levels.effective(self.name):
             return False
-        filters = _read_filters(kwargs) if kwargs else _NO_FILTERS
         frame = _find_caller(sys._getframe(1))
         code = frame.f_code
         key = (code.co_filename, code.co_firstlineno, code.co_name, frame.f_lasti)
         site = self._sites.get(key)
-        if site is None:
-            fresh = _Site(LoggingSeverity(severity), name or self.name, filters, frame)
-            site = self._sites.setdefault(key, fresh)
-        site.check(severity, name or self.name, filters)
-        if filters is not _NO_FILTERS and not site.passes():
+        if site is None or (severity, name or self.name, kwargs) != site.call:
+            filters = _read_filters(kwargs) if kwargs else _NO_FILTERS
+            if site is None:
+                fresh = _Site(LoggingSeverity(severity), name or self.name, filters, frame)
+                site = self._sites.setdefault(key, fresh)
+            site.check(severity, name or self.name, filters)
+            site.call = severity, name or self.name, kwargs
+        if site.filters is not _NO_FILTERS and not site.passes():
             return False
         output.emit(site.record(message))
         return True
@@ -158,6 +160,8 @@ class _Site:
         # The first line passes; with a clock of the user's it is held back at time 0, as rclpy does.
         self.last_logged = -(2**63) if filters.clock is None else 0
         self.was_skipped = self.was_logged = False
+        self.call: tuple[int, str, dict[str, Any]] | None = None
+        """Severity, name and filters of a call that was checked: one that is the same need not be."""
 
     def check(self, severity: int, name: str, filters: _Filters) -> None:
         if severity != self.severity:
