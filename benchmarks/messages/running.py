@@ -71,7 +71,7 @@ class Alone(NamedTuple):
     """From before its imports to when another process knew its node."""
     used: float
     """Processor time of its own until the node was made, in seconds."""
-    memory: float
+    memory: float | None
     """Megabytes when it idles."""
 
 
@@ -163,9 +163,12 @@ def on_core(command: list[str], core: int) -> list[str]:
     return ["taskset", "-c", str(core), *command] if PIN and shutil.which("taskset") else command
 
 
-def proportional_memory(pid: int) -> float:
-    """Return the memory of a process in MB, what it shares with others divided among them (Linux's PSS)."""
-    lines = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii").splitlines()
+def proportional_memory(pid: int) -> float | None:
+    """Return the memory of a process in MB, what it shares with others divided among them (PSS); None but on Linux."""
+    file = Path(f"/proc/{pid}/smaps_rollup")
+    if not file.exists():
+        return None
+    lines = file.read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("Pss:")) / 1024
 
 

@@ -142,7 +142,8 @@ def alone(turn: Turn) -> Figures:
     role = {"rclpy": "nodes", "sdk": "ros2_sdk"}.get(turn.player.name, "zenoh")
     watcher = turn.contender._replace(module="watch", variant=role)
     found = running.alone(turn.contender, watcher, turn.options.seconds(SETTLE))
-    return {"start": found.seconds, "start/used": found.used, "memory": found.memory}
+    memory = {} if found.memory is None else {"memory": found.memory}
+    return {"start": found.seconds, "start/used": found.used, **memory}
 
 
 def fifty(turn: Turn) -> Figures:
