@@ -26,7 +26,7 @@ class ContextLike(Protocol):
     """Context as seen from below: its time, its network, its end, and the threads of an executor."""
 
     _ok: bool
-    """What `ok` returns, without a call."""
+    """True from `init` to the end: `ok` without a call."""
 
     @property
     def time(self) -> TimeBase:

@@ -39,7 +39,7 @@ class Waiting:
         self._queue, self._inbox = queue, queue.inbox
         self._context, self._time = context, context.time
         self.failures: Sized = ()
-        """What callbacks in other threads have raised, for `check_end` to raise."""
+        """Exceptions that callbacks in other threads have raised, for `check_end` to raise."""
         self.take: Callable[..., Taken | None] = queue.take
         """Takes what is ready; None if there is nothing that may run now."""
         self.take_at_once: Callable[..., Taken | None] = queue.take_at_once
