@@ -92,7 +92,7 @@ class Graph:
         text = text or format_token(token)
         handle = self._transport.announce(text)
         gid = gid_of(text)
-        self._change(gid, token, True)
+        self._change(gid, token, True, own=True)
         return _Announced(handle, functools.partial(self._change, gid, token, False))
 
     def _on_news(self, text: str, alive: bool) -> bool:
@@ -109,42 +109,47 @@ class Graph:
                     " (the next ones are only counted)"
                 )
             return False
-        gid = gid_of(text)
-        if alive and not self._has_room(gid, token):
+        return self._change(gid_of(text), token, alive)
+
+    def _change(self, gid: bytes, token: Token, alive: bool, own: bool = False) -> bool:
+        """Note a token that has come or gone; False if it came and there is no room: then it is not seen later."""
+        with self._changed:
+            index = self._index
+            if alive == (gid in index.tokens):
+                return True
+            full = alive and not own and index.why_full(token.session)
+            if full:
+                self.too_many += 1
+            else:
+                (index.add if alive else index.remove)(gid, token)
+                self._changed.notify_all()
+                if isinstance(token, EndpointToken):
+                    self._notify(gid, token, alive)
+        if full:
+            self._refuse(full, token)
             return False
-        self._change(gid, token, alive)
+        if self._news:
+            self._tell()
         return True
 
-    def _has_room(self, gid: bytes, token: Token) -> bool:
-        """Return whether one more is taken in. What is refused is not seen later, unless it is announced again."""
-        with self._changed:
-            full = self._index.why_full(token.session)
-            if not full or gid in self._index.tokens:
-                return True
-            self.too_many += 1
-            first = self.too_many == 1
-        if first:
+    def _refuse(self, full: str, token: Token) -> None:
+        """Warn of the first announcement that is not taken in."""
+        if self.too_many == 1:
             get_logger("robolink.graph.graph").warning(
                 f"{full} on domain {self._domain_id}: further ones are not seen, that of"
                 f" {shown(token.full_node_name)} is the first"
             )
-        return False
 
-    def _change(self, gid: bytes, token: Token, alive: bool) -> None:
-        with self._changed:
-            if alive == (gid in self._index.tokens):
-                return
-            (self._index.add if alive else self._index.remove)(gid, token)
-            self._changed.notify_all()
-            if isinstance(token, EndpointToken):
-                followers = self._followers.get((token.name, token.kind), ())
-                followers += self._followers.get((EVERY, token.kind), ())
-                if self._humble is None and token.type_hash == NO_HASH:
-                    self._humble = gid, token
-                    followers += tuple(self._await_humble)
-                    self._await_humble.clear()
-                self._news.extend(each.notification(gid, token, alive) for each in followers)
-        self._tell()
+    def _notify(self, gid: bytes, token: EndpointToken, alive: bool) -> None:
+        """Note whom to tell of an endpoint that has come or gone."""
+        followers = self._followers.get((token.name, token.kind), ())
+        followers += self._followers.get((EVERY, token.kind), ())
+        if self._humble is None and token.type_hash == NO_HASH:
+            self._humble = gid, token
+            followers += tuple(self._await_humble)
+            self._await_humble.clear()
+        if followers:
+            self._news.extend(each.notification(gid, token, alive) for each in followers)
 
     # Who wants to know
 
@@ -354,7 +359,7 @@ class _Following:
 class _Announced:
     """Handle of an announcement of this session."""
 
-    def __init__(self, handle: Handle, forget: Callable[[], None]) -> None:
+    def __init__(self, handle: Handle, forget: Callable[[], object]) -> None:
         self._handle, self._forget = handle, forget
 
     def close(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import sys
+from collections.abc import Callable
 from enum import Enum, IntEnum
 from typing import Any, NamedTuple, TypeVar
 
@@ -44,6 +45,11 @@ _FIELD = r"[^/*$?#]+"
 _ID = late(_FIELD)
 _MORE = late(rf"{_FIELD}(?:/{_FIELD})*")
 _NODE, _NODE_FIELDS, _ENDPOINT_FIELDS = "NN", 9, 13
+_ENDPOINT = late(
+    rf"{_GRAPH}/(0|[1-9][0-9]{{0,18}})/([0-9a-f]{{1,32}})/({_FIELD})/({_FIELD})/(M[PS]|S[SC])"
+    rf"/({_FIELD})/({_FIELD})/({_FIELD})/((?:%{CHUNK})+)/({_FIELD})/({_FIELD})/({_FIELD})"
+)
+"""Whole token of an endpoint without further fields: most tokens of a graph, read by one match."""
 
 _BACKENDS = "backends:"
 CPU_BACKEND = f"{_BACKENDS}cpu:"
@@ -58,6 +64,10 @@ class EndpointKind(Enum):
     SERVICE = "SS"
     CLIENT = "SC"
 
+    __hash__ = object.__hash__  # Enum's own is Python, and each token of a graph is looked up by its kind
+
+
+_KINDS = {kind.value: kind for kind in EndpointKind}
 
 OTHER_END = {
     EndpointKind.PUBLISHER: EndpointKind.SUBSCRIPTION,
@@ -123,6 +133,10 @@ class EndpointToken(NamedTuple):
         return same_hash and self.type_name == other.type_name
 
 
+_make_endpoint: Callable[[tuple[Any, ...]], EndpointToken] = functools.partial(tuple.__new__, EndpointToken)
+"""Fast constructor of EndpointToken, whose own `__new__` is Python."""
+
+
 def graph_pattern(domain: int | None = None) -> str:
     """Return the key expression that all tokens of a domain match; without one, those of all domains."""
     return f"{_GRAPH}/**" if domain is None else f"{_GRAPH}/{format_number(domain)}/**"
@@ -158,6 +172,46 @@ def parse_token(text: str) -> NodeToken | EndpointToken:
 
     Fields behind the known ones are kept, unread. Tokens share their profiles: copy one before you change it.
     """
+    found = _ENDPOINT.fullmatch(text) if len(text) <= LONGEST else None
+    return parsed_by_field(text) if found is None else _parsed_endpoint(*found.groups())
+
+
+def _parsed_endpoint(
+    domain: str,
+    session: str,
+    node_id: str,
+    own_id: str,
+    kind: str,
+    enclave: str,
+    namespace: str,
+    node_name: str,
+    name: str,
+    dds_type: str,
+    type_hash: str,
+    qos: str,
+) -> EndpointToken:
+    """Return the token of fields whose letters are known to be right."""
+    return _make_endpoint(
+        (
+            int(domain),
+            sys.intern(session),
+            node_id,
+            own_id,
+            _KINDS[kind],
+            _demangled(enclave),
+            _demangled(namespace),
+            _demangled(node_name),
+            name.replace("%", "/"),
+            demangle_type(dds_type),
+            checked_hash(type_hash),
+            shared_qos(qos),
+            "",
+        )
+    )
+
+
+def parsed_by_field(text: str) -> NodeToken | EndpointToken:
+    """Parse any token, or raise WireError that tells which field is wrong."""
     fields = not_too_long(text, "a token").split("/")
     is_node = fields[5:6] == [_NODE]
     known = _NODE_FIELDS if is_node else _ENDPOINT_FIELDS
