@@ -9,6 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.messages.running import Contender, GameError
+from benchmarks.peers import Record, measure
+from benchmarks.record.players import Field, Player
+from benchmarks.record.rows import Figures, Game, Options, Turn
+
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 SCRIPT = BENCHMARKS / "messaging.py"
 
@@ -54,3 +59,23 @@ def test_a_row_of_record_has_figures_of_all_who_are_there(game: str, players: li
     assert all(figure > 0 for figure in found["medians"][game].values())
     assert found["failed"] == {}
     assert set(found["missing"]) == {"rclpy", "sdk", "dora", "zeromq"}
+
+
+def test_a_player_that_fails_once_goes_on_and_one_that_fails_twice_is_out(tmp_path: Path) -> None:
+    turns: list[str] = []
+
+    def play(turn: Turn) -> Figures:
+        turns.append(turn.player.name)
+        if turn.player.name == "bad" or (turns.count("robolink") == 1 and turn.player.name == "robolink"):
+            raise GameError("it did not start")
+        return {"twist": 5.0}
+
+    players = {name: Player(name, name, Contender(name, "nodes"), ()) for name in ("robolink", "bad")}
+    there = Field(players, {}, {"bare": "not there"})
+    record = Record(tmp_path / "record.json", there, keep=False)
+    measure(Game("twist", ("robolink", "bad", "bare"), play), there, record, 4, Options())
+    found = json.loads((tmp_path / "record.json").read_text(encoding="utf-8"))
+    assert turns == ["robolink", "bad", "robolink", "bad", "robolink", "robolink"]
+    assert found["rows"] == {"twist": {"robolink": [5.0, 5.0, 5.0]}}
+    assert found["failed"] == {"twist": dict.fromkeys(("robolink", "bad"), "GameError: it did not start")}
+    assert found["missing"] == {"bare": "not there"}
