@@ -13,10 +13,7 @@ from robolink.exceptions import MessageError
 from robolink.message.annotations import FieldType
 from robolink.message.base import Message, maker
 from robolink.message.cdr_layout import CODES, SIZES, Lines, padded, phases
-from robolink.message.numbers import DTYPES
-
-VIEW_FROM = 65536
-"""Size in bytes from which a sequence of numbers is a view of the bytes received, until a program asks for it."""
+from robolink.message.numbers import DTYPES, VIEW_FROM
 
 
 class ReaderSource:

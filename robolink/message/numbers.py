@@ -57,6 +57,9 @@ def _service_has_fixed_numbers(cls: type[Any]) -> bool:
     return any(map(has_fixed_numbers, (cls.Request, cls.Response))) if known is None else known.has_fixed_numbers
 
 
+VIEW_FROM = 65536
+"""Size in bytes from which numbers stay a view of bytes, received or assigned, until a program asks for them."""
+
 _settling = threading.RLock()
 """Lock under which a view becomes an array, so that two threads that ask at once get the same one. Freed by a fork."""
 if hasattr(os, "register_at_fork"):
@@ -95,7 +98,10 @@ class Numbers:
         return value
 
     def __set__(self, message: Any, value: Any) -> None:
-        made = self.convert(value)
+        if type(value) is bytes and len(value) >= VIEW_FROM and self.code == "B" and self.kind.shape != "array":
+            made: Any = memoryview(value)  # nobody can change them: copied only if the field is read
+        else:
+            made = self.convert(value)
         if type(self.stored(message)) is memoryview:
             with _settling:  # else a thread that just makes an array of the view would store it over this one
                 self.store(message, made)
@@ -105,6 +111,8 @@ class Numbers:
     def packable(self, message: Any) -> Any:
         """Return the numbers for the encoder: a view of bytes received as it is, else as `__get__`."""
         value = self.stored(message)
+        if type(value) is bytes and self.code == "B":
+            return memoryview(value)
         if type(value) is memoryview and value.format == self.code and value.ndim == 1 and value.c_contiguous:
             return value
         return self.__get__(message)

@@ -7,7 +7,7 @@ import pickle
 import threading
 from array import array
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
@@ -18,8 +18,8 @@ from robolink.exceptions import EncodeError
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.interfaces.sensor_msgs.msg import Image, Imu, LaserScan
 from robolink.interfaces.std_msgs.msg import Float64MultiArray
-from robolink.message import decode, encode
-from robolink.message.cdr_reader import VIEW_FROM
+from robolink.message import Message, Sequence, Size, decode, encode, uint8
+from robolink.message.numbers import VIEW_FROM
 
 BYTES = bytes(range(256)) * (VIEW_FROM // 256)
 SQUARE = memoryview(BYTES).cast("B", (256, VIEW_FROM // 256))
@@ -215,3 +215,27 @@ def test_a_number_out_of_range_is_an_overflow_error_as_in_rclpy(value: Any) -> N
     with pytest.raises(OverflowError, match=r"Image\.data: expected uint8\[\]") as caught:
         Image().data = value
     assert isinstance(caught.value, EncodeError)
+
+
+def test_large_bytes_are_neither_copied_when_assigned_nor_when_sent() -> None:
+    image: Any = Image()
+    made = Image(data=BYTES)
+    image.data = BYTES
+    assert encode(image) == encode(made) == encode(Image(data=array("B", BYTES)))
+    assert type(stored(image)) is memoryview
+    assert stored(made) is BYTES
+    image.data[0] = 7  # an array of its own, once it is asked for
+    assert (image.data[0], type(image.data), BYTES[0]) == (7, array, 0)
+    assert decode(Image, encode(image)).data == image.data
+
+
+class Block(Message):
+    """A message with large numbers of a fixed size."""
+
+    numbers: Annotated[Sequence[uint8], Size(len(BYTES))]
+
+
+def test_large_bytes_for_an_array_of_a_fixed_size_are_refused_at_once() -> None:
+    block: Any = Block()
+    with pytest.raises(EncodeError, match="expected"):
+        block.numbers = BYTES + b"0"

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from robolink import Context, Node
 from robolink.executors import SingleThreadedExecutor
 from robolink.interfaces.sensor_msgs.msg import Image
-from robolink.message.cdr_reader import VIEW_FROM
+from robolink.message.numbers import VIEW_FROM
 from robolink.qos import DurabilityPolicy, QoSProfile
 from tests.support.spins import spin_until
 from tests.support.transports import Network
