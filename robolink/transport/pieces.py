@@ -8,8 +8,8 @@ from typing import Any
 LARGE = 32 * 1024
 """Payload size in bytes from which it may be in pieces, and subscriptions are looked for before it is copied."""
 
-PIECE = 128 * 1024
-"""Size in bytes of what is copied at a time by way of a bytes object: two of them fit into a core's own cache."""
+PIECE = 256 * 1024
+"""Size in bytes of what is copied at a time by way of a bytes object: two of them fit into the cache of most cores."""
 
 
 class Pieces:
