@@ -55,16 +55,16 @@ def be_member(number: int, processes: int, nodes: int) -> None:
     for node in made:
         executor.add_node(node)
     report()
-    sys.stdin.readline()
+    await_word()
     wanted = processes * nodes
     while len(made[0].get_node_names()) < wanted:
         turn(executor)
     while sum(name.endswith("/state") for name, _ in made[0].get_topic_names_and_types()) < wanted:
         turn(executor)
     report()
-    sys.stdin.readline()
+    await_word()
     report()
-    sys.stdin.readline()
+    await_word()
     del kept, ears
 
 
@@ -89,16 +89,22 @@ def be_bare(number: int, processes: int, nodes: int) -> None:
     name = "%|%|talker|%a|geometry_msgs::msg::dds_::Twist_|RIHS01_" + "0" * 64
     kept = [liveliness.declare_token(f"@ros2_lv/{session.info.zid()}/{each}/{name}") for each in kinds]
     report()
-    sys.stdin.readline()
+    await_word()
     while len(seen) < processes * nodes * TOKENS:
         while (sample := channel.handler.try_recv()) is not None:
             seen.add(str(sample.key_expr))
         time.sleep(LOOK_EVERY)
     report()
-    sys.stdin.readline()
+    await_word()
     report()
-    sys.stdin.readline()
+    await_word()
     del kept
+
+
+def await_word() -> None:
+    """Wait for a line of the process that asks; end with it."""
+    if not sys.stdin.readline():
+        os._exit(1)
 
 
 def report() -> None:
