@@ -48,7 +48,7 @@ def be_member(number: int, processes: int, nodes: int) -> None:
 
     robolink.init(args=[])
     made = [robolink.Node(f"p{number}_n{each}") for each in range(nodes)]
-    kept = [node.create_publisher(Header, f"{node.get_name()}/state", 10) for node in made]
+    publishers = [node.create_publisher(Header, f"{node.get_name()}/state", 10) for node in made]
     heard = (number + 1) % processes
     ears = [node.create_subscription(Header, f"p{heard}_n{n}/state", print, 10) for n, node in enumerate(made)]
     executor = SingleThreadedExecutor()
@@ -56,16 +56,16 @@ def be_member(number: int, processes: int, nodes: int) -> None:
         executor.add_node(node)
     report()
     await_word()
-    wanted = processes * nodes
-    while len(made[0].get_node_names()) < wanted:
+    expected = processes * nodes
+    while len(made[0].get_node_names()) < expected:
         turn(executor)
-    while sum(name.endswith("/state") for name, _ in made[0].get_topic_names_and_types()) < wanted:
+    while sum(name.endswith("/state") for name, _ in made[0].get_topic_names_and_types()) < expected:
         turn(executor)
     report()
     await_word()
     report()
     await_word()
-    del kept, ears
+    del publishers, ears
 
 
 def turn(executor: Any) -> None:
@@ -87,7 +87,7 @@ def be_bare(number: int, processes: int, nodes: int) -> None:
     channel = liveliness.declare_subscriber("@ros2_lv/**", zenoh.handlers.FifoChannel(1 << 16), history=True)
     kinds = [f"{number}/{node}/{each}" for node in range(nodes) for each in range(TOKENS)]
     name = "%|%|talker|%a|geometry_msgs::msg::dds_::Twist_|RIHS01_" + "0" * 64
-    kept = [liveliness.declare_token(f"@ros2_lv/{session.info.zid()}/{each}/{name}") for each in kinds]
+    tokens = [liveliness.declare_token(f"@ros2_lv/{session.info.zid()}/{each}/{name}") for each in kinds]
     report()
     await_word()
     while len(seen) < processes * nodes * TOKENS:
@@ -98,7 +98,7 @@ def be_bare(number: int, processes: int, nodes: int) -> None:
     await_word()
     report()
     await_word()
-    del kept
+    del tokens
 
 
 def await_word() -> None:
@@ -137,19 +137,19 @@ class Figures(NamedTuple):
 
 
 @contextmanager
-def crowd(contender: Contender, asked: argparse.Namespace) -> Iterator[list[subprocess.Popen[str]]]:
+def crowd(contender: Contender, options: argparse.Namespace) -> Iterator[list[subprocess.Popen[str]]]:
     """Start the processes; end them at the end of the `with` block."""
     found: list[subprocess.Popen[str]] = []
-    environment = ENVIRONMENT | {"ROS_DOMAIN_ID": str(asked.domain)}
+    environment = ENVIRONMENT | {"ROS_DOMAIN_ID": str(options.domain)}
     try:
         begin = time.monotonic()
-        for number in range(asked.processes):
-            time.sleep(max(0.0, begin + number * asked.every - time.monotonic()))
+        for number in range(options.processes):
+            time.sleep(max(0.0, begin + number * options.every - time.monotonic()))
             words = [contender.python, __file__, "--part", contender.part, "--number", str(number)]
-            words += ["--processes", str(asked.processes), "--nodes", str(asked.nodes)]
+            words += ["--processes", str(options.processes), "--nodes", str(options.nodes)]
             pipe = subprocess.PIPE
             found.append(subprocess.Popen(words, stdin=pipe, stdout=pipe, text=True, env=environment, cwd="/"))
-            if asked.one_by_one:
+            if options.one_by_one:
                 select.select([*filter(None, [found[-1].stdout])], [], [], PATIENCE)
         yield found
     finally:
@@ -160,12 +160,12 @@ def crowd(contender: Contender, asked: argparse.Namespace) -> Iterator[list[subp
 
 
 def answer(process: subprocess.Popen[str]) -> Any:
-    """Return what a process reports."""
+    """Return the figures that a process reports."""
     assert process.stdout is not None
     return json.loads(process.stdout.readline())
 
 
-def told(processes: Sequence[subprocess.Popen[str]]) -> list[Any]:
+def reports(processes: Sequence[subprocess.Popen[str]]) -> list[Any]:
     """Ask all for their next report, and return these."""
     for process in processes:
         assert process.stdin is not None
@@ -174,13 +174,13 @@ def told(processes: Sequence[subprocess.Popen[str]]) -> list[Any]:
     return [answer(each) for each in processes]
 
 
-def play(contender: Contender, asked: argparse.Namespace) -> Figures:
+def play(contender: Contender, options: argparse.Namespace) -> Figures:
     """Run one round."""
     begin = time.monotonic()
-    with crowd(contender, asked) as processes:
+    with crowd(contender, options) as processes:
         last = time.monotonic()
         made = [answer(each) for each in processes]
-        seen, cost = (told(processes) for _ in range(2))
+        seen, cost = (reports(processes) for _ in range(2))
     end = max(each["time"] for each in seen)
     start, cpu = (sum(each["cpu"] for each in found) for found in (made, cost))
     return Figures(end - begin, end - last, start, cpu)
@@ -209,26 +209,26 @@ def main() -> None:
     parser.add_argument("--json", help="file for the figures")
     parser.add_argument("--part", help=argparse.SUPPRESS)
     parser.add_argument("--number", type=int, help=argparse.SUPPRESS)
-    asked = parser.parse_args()
-    if asked.part:
-        {"member": be_member, "bare": be_bare}[asked.part](asked.number, asked.processes, asked.nodes)
+    options = parser.parse_args()
+    if options.part:
+        {"member": be_member, "bare": be_bare}[options.part](options.number, options.processes, options.nodes)
         return
-    others = [Contender(path, str(Path(path).resolve() / ".venv/bin/python")) for path in asked.beside]
-    bare = [Contender("bare Zenoh", sys.executable, "bare")] if asked.bare else []
+    others = [Contender(path, str(Path(path).resolve() / ".venv/bin/python")) for path in options.beside]
+    bare = [Contender("bare Zenoh", sys.executable, "bare")] if options.bare else []
     contenders = [*others, Contender("robolink", sys.executable), *bare]
     found: dict[str, list[Figures]] = {each.name: [] for each in contenders}
-    for _ in range(asked.rounds):
+    for _ in range(options.rounds):
         for each in contenders:
-            found[each.name].append(play(each, asked))
+            found[each.name].append(play(each, options))
             print(f"    {each.name}: {found[each.name][-1]}", file=sys.stderr, flush=True)
     print(
-        f"{asked.processes} processes of {asked.nodes} nodes, s; median of {asked.rounds} rounds (least, most), ratio"
+        f"{options.processes} processes of {options.nodes} nodes, s; median of {options.rounds} rounds (least, most), ratio"
     )
     for name, figures in found.items():
         show(name, figures, found[contenders[0].name])
-    if asked.json:
+    if options.json:
         figures_of = {name: [each._asdict() for each in figures] for name, figures in found.items()}
-        Path(asked.json).write_text(json.dumps(figures_of), encoding="utf-8")
+        Path(options.json).write_text(json.dumps(figures_of), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -71,23 +71,23 @@ INSIDE = (
 """In one process: a copy of the bytes alone, and a message by each transport."""
 
 
-def contenders(row: str, asked: argparse.Namespace) -> list[Contender]:
+def contenders(row: str, chosen: argparse.Namespace) -> list[Contender]:
     """Contenders of a row; the first is what the others are compared with."""
     is_flood, kind = row.startswith("flood-"), row.removeprefix("flood-")
     found = [BARE, *([SAME] if kind in LARGE else []), SPIN, *([] if is_flood else [ONCE])]
-    if asked.all:
+    if chosen.all:
         found += [THREADS, *([] if is_flood else [LOOP]), *([] if is_flood or row in LARGE else [HANDED])]
         found += [each for each in VARIANTS if kind in LARGE and not (is_flood and each.variant == "echo")]
         found += [each for each in PEERS if importlib.util.find_spec(each.needs)]
-    if asked.names:
+    if chosen.names:
         known = {each.name: each for each in (BARE, SAME, HANDED, SPIN, ONCE, THREADS, LOOP, *VARIANTS, *PEERS)}
-        found = [known[name] for name in asked.names]
-    return found + beside([each for each in found if each.module == "nodes"], asked)
+        found = [known[name] for name in chosen.names]
+    return found + beside([each for each in found if each.module == "nodes"], chosen)
 
 
-def beside(players: Sequence[Contender], asked: argparse.Namespace) -> list[Contender]:
+def beside(players: Sequence[Contender], chosen: argparse.Namespace) -> list[Contender]:
     """The same contenders with the robolink of `--beside`; none without that."""
-    path = asked.beside and str(Path(asked.beside).resolve())
+    path = chosen.beside and str(Path(chosen.beside).resolve())
     return [each._replace(name=f"{each.name}*", path=path) for each in players] if path else []
 
 
@@ -111,10 +111,10 @@ def spread(figures: Sequence[float]) -> str:
     return f"{min(figures):,.0f}-{max(figures):,.0f}"
 
 
-def show_trips(row: str, asked: argparse.Namespace) -> dict[str, Any]:
+def show_trips(row: str, chosen: argparse.Namespace) -> dict[str, Any]:
     """Print round trips in microseconds, and how many times those of the first each takes."""
-    found = rounds_of(contenders(row, asked), asked.rounds, lambda each: round_trips(each, row, asked.seconds))
-    print(f"{row}: round trip, us, median of {asked.rounds} rounds (least and most), and ratio to the first")
+    found = rounds_of(contenders(row, chosen), chosen.rounds, lambda each: round_trips(each, row, chosen.seconds))
+    print(f"{row}: round trip, us, median of {chosen.rounds} rounds (least and most), and ratio to the first")
     return show(found)
 
 
@@ -127,13 +127,15 @@ def show(found: dict[str, list[float]]) -> dict[str, Any]:
     return {name: {"median": medians[name], "rounds": found[name]} for name in found}
 
 
-def show_flood(row: str, asked: argparse.Namespace) -> dict[str, Any]:
+def show_flood(row: str, chosen: argparse.Namespace) -> dict[str, Any]:
     """Print the messages received in a second and lost, and the share of the first."""
     kind = row.removeprefix("flood-")
     found: dict[str, list[Flood]] = rounds_of(
-        contenders(row, asked), asked.rounds, lambda each: flood(each, kind, asked.seconds)
+        contenders(row, chosen), chosen.rounds, lambda each: flood(each, kind, chosen.seconds)
     )
-    print(f"{row}: received a second, median of {asked.rounds} rounds (least and most), share of the first's, and lost")
+    print(
+        f"{row}: received a second, median of {chosen.rounds} rounds (least and most), share of the first's, and lost"
+    )
     rates = {name: [each.rate for each in rounds] for name, rounds in found.items()}
     lost = {name: statistics.median(each.lost for each in rounds) for name, rounds in found.items()}
     medians = {name: statistics.median(each) for name, each in rates.items()}
@@ -144,24 +146,24 @@ def show_flood(row: str, asked: argparse.Namespace) -> dict[str, Any]:
     return {name: {"median": medians[name], "rounds": rates[name], "lost": lost[name]} for name in found}
 
 
-def show_inside(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+def show_inside(_: str, chosen: argparse.Namespace) -> dict[str, Any]:
     """Print how long 6.2 MB take from `publish` to the callback of the same process."""
 
     def play(each: Contender) -> float:
-        return inside(each, "inside" if each.variant else "copies", "6mb", asked.seconds)
+        return inside(each, "inside" if each.variant else "copies", "6mb", chosen.seconds)
 
-    print(f"inside: 6.2 MB in one process, publish to callback, us, median of {asked.rounds} rounds")
-    return show(rounds_of([*INSIDE, *beside(INSIDE[1:], asked)], asked.rounds, play))
+    print(f"inside: 6.2 MB in one process, publish to callback, us, median of {chosen.rounds} rounds")
+    return show(rounds_of([*INSIDE, *beside(INSIDE[1:], chosen)], chosen.rounds, play))
 
 
-def show_calls(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+def show_calls(_: str, chosen: argparse.Namespace) -> dict[str, Any]:
     """Print how long a service call takes, and how many times that of Zenoh's querier."""
-    players = [*CALLS, *beside(CALLS[1:], asked)]
-    print(f"call: a service's answer, us, median of {asked.rounds} rounds (least and most), and ratio to the first")
-    return show(rounds_of(players, asked.rounds, lambda each: round_trips(each, "twist", asked.seconds)))
+    players = [*CALLS, *beside(CALLS[1:], chosen)]
+    print(f"call: a service's answer, us, median of {chosen.rounds} rounds (least and most), and ratio to the first")
+    return show(rounds_of(players, chosen.rounds, lambda each: round_trips(each, "twist", chosen.seconds)))
 
 
-def show_codec(_: str, asked: argparse.Namespace) -> dict[str, Any]:
+def show_codec(_: str, chosen: argparse.Namespace) -> dict[str, Any]:
     """Print microseconds out and in."""
     from benchmarks.messages.codec import codec
 
@@ -198,17 +200,17 @@ def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def main() -> None:
-    asked, figures = options(), {}
-    running.PIN = not asked.free
+    chosen, figures = options(), {}
+    running.PIN = not chosen.free
     print(conditions())
-    for row in asked.only or ROWS:
+    for row in chosen.only or ROWS:
         show_row: Callable[[str, argparse.Namespace], dict[str, Any]]
         special = {"inside": show_inside, "call": show_calls, "codec": show_codec}
         show_row = special.get(row, show_flood if row in FLOODS else show_trips)
-        figures[row] = show_row(row, asked)
+        figures[row] = show_row(row, chosen)
         sys.stdout.flush()
-    if asked.json:
-        asked.json.write_text(json.dumps(figures, indent=1), encoding="utf-8")
+    if chosen.json:
+        chosen.json.write_text(json.dumps(figures, indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -104,7 +104,8 @@ class Subscription(Receiver, Generic[MsgT]):
         event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         depth = stored_depth(qos_profile)
-        super().__init__(owner.context.inbox, depth, callback_group, self._look_over if depth == ALL else None)
+        self._inbox, prepare = owner.context.inbox, self._look_over if depth == ALL else None
+        super().__init__(self._inbox, depth, callback_group, prepare, owner.context.transport.threaded)
         self.msg_type = msg_type
         self.topic = self._topic_name = topic
         self.qos_profile = qos_profile
@@ -131,7 +132,6 @@ class Subscription(Receiver, Generic[MsgT]):
         self._open: Callable[[Any], Any] | None = transport.opener(self._check, self._decode)
         """Function that turns what arrived into a message, the short way; None where `_read` does more."""
         self._humble_receiver: _HumbleReceiver | None = None
-        self._inbox = owner.context.inbox
         self._handles: list[Handle] = []
         self._backlog: Backlog | None = None
         if depth == ALL:
@@ -224,7 +224,7 @@ class Subscription(Receiver, Generic[MsgT]):
     def turn(self) -> Any:
         """Take the oldest of what waits and execute it, as `Entity.turn` does, with the usual way written out."""
         waiting, opened = self.mailbox.waiting, self._open
-        if len(waiting) != 1 or opened is None or self._with_info or self._backlog is not None:
+        if len(waiting) != 1 or opened is None or self._with_info or not self.straight:
             return super().turn()
         group = self.gate
         acquire = group._acquire_

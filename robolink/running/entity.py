@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from robolink.running.destroyable import Destroyable
 from robolink.running.inbox import Inbox
+from robolink.running.keep_last import KeepLast
 from robolink.running.ready_queue import HELD, OTHER, TASK, WAITABLE, Place, ReadyQueue, reserve
 from robolink.running.ready_queue import NOTHING as NOTHING
-from robolink.transport.history import Mailbox
+from robolink.transport.history import ALL, Mailbox
 
 if TYPE_CHECKING:
     from robolink.running.ports import ContextLike, Loop, NodeLike
@@ -152,6 +153,7 @@ class Receiver(Entity):
         depth: Largest number of arrivals that wait; 0 is any number.
         callback_group: Group of its callback; None lets it run at any time.
         prepare: Function of what arrives, which returns what is stored in its place, or None for nothing.
+        threaded: True if threads of the network deliver: what is too much is dropped there, without Python.
     """
 
     def __init__(
@@ -160,22 +162,33 @@ class Receiver(Entity):
         depth: int,
         callback_group: CallbackGroup | None = None,
         prepare: Callable[[Any], Any] | None = None,
+        threaded: bool = False,
     ) -> None:
         super().__init__(callback_group)
         self.lane = 0  # in the instance, where Python 3.11 finds it in a tenth of the time
         self._parking = parking
-        self.mailbox = Mailbox(depth, self.become_ready, self.overflowed, prepare)
-        self.straight = prepare is None
+        drops_in_c = threaded and depth != ALL and prepare is None
+        self.straight = prepare is None and not drops_in_c
         """True if an executor may take what arrives straight from the inbox: its mailbox would only hand it on."""
+        self._storage: KeepLast | None = None
+        self.mailbox: Mailbox
+        if drops_in_c:
+            self.mailbox = self._storage = KeepLast(depth, self, parking)
+        else:
+            self.mailbox = Mailbox(depth, self.become_ready, self.overflowed, prepare)
         self.deliver: Callable[[Any], None] = self.mailbox.put
         """Store what arrives, and be ready from then on."""
-        self.sink: functools.partial[Any] = parking.sink(self)
+        self.sink: functools.partial[Any] = parking.sink(self) if self._storage is None else self._storage.entrance
 
     def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
         self._move(self._parking, executor._queue_.inbox)
         super().attach(executor, has_turn)
-        self.mailbox.listed = has_turn and executor._queue_.in_rounds and not self.lane
+        has_turns = bool(self.lane) or not executor._queue_.in_rounds
+        if self._storage is not None:
+            self._storage.begin(executor._queue_, self, has_turn=has_turn, has_turns=has_turns)
+            return
+        self.mailbox.listed = has_turn and not has_turns
         for _ in range(len(self.mailbox) - has_turn):
             if not self.mailbox.listed:
                 self.become_ready()
@@ -185,6 +198,10 @@ class Receiver(Entity):
         queue = self._queue_
         if queue is not None:
             with queue.lock:
+                if self._storage is not None:
+                    if self._storage.in_flood:
+                        queue.flooded.remove(self._storage)
+                    self._storage.end()
                 self._move(queue.inbox, self._parking)
                 super().detach()
 
@@ -196,7 +213,7 @@ class Receiver(Entity):
 
     def redirect(self, inbox: Inbox) -> None:
         """Redirect what comes from now on to this `inbox`."""
-        inbox.take_over(self.sink)
+        inbox.take_over(self.sink if self._storage is None else self._storage.sink)
 
     def become_ready(self) -> None:
         """Take a turn in the next round; as a part of a waitable, one turn more."""
@@ -206,11 +223,24 @@ class Receiver(Entity):
         self.mailbox.listed = queue.in_rounds and not self.lane  # else each message has a turn, as a waitable's do
         queue.ready.append(self)
 
+    def arrives_for(self) -> Receiver:
+        """Return the entity that arrivals are for: itself."""
+        return self
+
+    def take_arrived(self, _: Receiver, content: Any) -> Any:
+        """Return `content`, which has just arrived; NOTHING if others came before it, behind which it waits then."""
+        if self.mailbox.waiting:
+            self.deliver(content)
+            return NOTHING
+        return content
+
     def overflowed(self) -> None:
         """Note, under the inbox's lock, that the oldest of what waited was dropped for what has arrived."""
 
     def take(self) -> Any:
         """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
+        if self._storage is not None:
+            return self._storage.take_arrived(self)
         mailbox = self.mailbox
         waiting = mailbox.waiting
         if not waiting:

@@ -29,7 +29,7 @@ class Target(Protocol):
     sink: functools.partial[Any]
 
     straight: bool
-    """True if an executor may take what arrives straight from the inbox: a plain mailbox would only hand it on."""
+    """True if an executor may take what arrives at once, by `arrives_for` and `take_arrived` as a Receiver has them."""
 
     @property
     def deliver(self) -> Callable[[Any], None]:

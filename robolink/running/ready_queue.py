@@ -74,6 +74,18 @@ class Scheduled(Runnable, Protocol):
     """The queue that it belongs to now."""
 
 
+class Flooded(Protocol):
+    """Mailbox in a flood as seen by the queue that looks for what no notice told of."""
+
+    waiting: deque[Any]
+
+    def deliver(self) -> None:
+        """Make its receiver ready."""
+
+    def calm(self) -> bool:
+        """Put a notice for each message again if few have come; True if so."""
+
+
 class Timekeeper(Protocol):
     """Keeper of the deadlines of all programs of a host."""
 
@@ -111,6 +123,8 @@ class ReadyQueue(Generic[EntityT]):
         """True if tasks were the last to have turns."""
         self.postponed: deque[EntityT] = deque()
         """Tasks to be run again in a moment."""
+        self.flooded: list[Flooded] = []
+        """Mailboxes that a flood fills: they do not tell of each message."""
         self.pollables: list[Any] = []
         """The polled entities: each is asked before each look at what is ready."""
         self.timers: list[tuple[int, int, int, Scheduled]] = []
@@ -226,6 +240,21 @@ class ReadyQueue(Generic[EntityT]):
         self.ready.extendleft(reversed(left))
         return turns
 
+    # Floods
+
+    def gather(self) -> bool:
+        """Make ready what waits in flooded mailboxes; False if nothing does."""
+        with self.lock:
+            for each in self.flooded:
+                if each.waiting:
+                    each.deliver()
+            return bool(self.ready)
+
+    def calm(self) -> None:
+        """Let flooded mailboxes put a notice for each message again, where few have come."""
+        with self.lock:
+            self.flooded = [each for each in self.flooded if not each.calm()]
+
     # Taking
 
     def take(self, accepts: Callable[[EntityT], bool] | None = None) -> tuple[EntityT, Any] | None:
@@ -264,12 +293,16 @@ class ReadyQueue(Generic[EntityT]):
         target = arrival.target
         if target.straight and accepts is None:
             with self.lock:
-                if not (self.ready or self.turns or target.mailbox.waiting):
-                    group = target.gate
-                    if target._queue_ is self and (
-                        group._acquire_(False) if group._acquire_ else reserve(group, target)
-                    ):
-                        return target, arrival.content
+                if not (self.ready or self.turns):
+                    entity = target.arrives_for()
+                    if entity is not None and entity._queue_ is self:
+                        group = entity.gate
+                        if group._acquire_(False) if group._acquire_ else reserve(group, entity):
+                            taken = target.take_arrived(entity, arrival.content)
+                            if taken is not NOTHING:
+                                return entity, taken
+                            group.ending_execution(entity)
+                            return None
         self.inbox.deliver(arrival)
         return None
 

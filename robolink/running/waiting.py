@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 POLL_NS = 1_000_000
 """Polling period, in nanoseconds, of a coroutine that awaits something foreign, which wakes no executor."""
 
+GATHER_NS = 500_000
+"""Largest time, in nanoseconds, in which the messages of a flood gather; if too few come, it is over."""
+
 Taken = tuple[Entity, Any]
 """An entity, and what it gave to be executed."""
 
@@ -80,7 +83,7 @@ class Waiting:
                     return taken
             if stop is not None or self.failures or executor._is_shutdown or not self._context._ok:  # else a call less
                 _check(executor, stop)
-            usual = deadline is None and not queue.postponed  # then a call less
+            usual = deadline is None and not queue.postponed and not queue.flooded  # then a call less
             arrival = self.pause(inbox, next_timer) if usual else self._wait_for_arrival(deadline, next_timer)
             if arrival is not None:
                 taken = self.take_at_once(arrival, accepts)
@@ -91,13 +94,22 @@ class Waiting:
 
     def _wait_for_arrival(self, deadline: int | None, next_timer: int | None) -> Any:
         """Wait, unless there is a reason not to, until something arrives, a timer is due or there is news."""
-        postponed = self._queue.postponed
+        queue = self._queue
+        if queue.flooded and queue.gather():
+            return None
         if deadline is not None and self._time.steady() >= deadline:
-            if not postponed:
+            if not queue.postponed:
                 raise TimeoutException
             return None  # also whoever spins without waiting gets them done
         wake_at = earlier(deadline, next_timer)
-        return self.pause(self._inbox, earlier(wake_at, self._time.steady() + POLL_NS) if postponed else wake_at)
+        if queue.postponed:
+            wake_at = earlier(wake_at, self._time.steady() + POLL_NS)
+        if not queue.flooded:
+            return self.pause(self._inbox, wake_at)
+        arrival = self.pause(self._inbox, earlier(wake_at, self._time.steady() + GATHER_NS))
+        if arrival is None:
+            queue.calm()
+        return arrival
 
 
 def _check(executor: Ending, stop: Callable[[], bool] | None) -> None:

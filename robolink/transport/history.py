@@ -35,6 +35,11 @@ def _nothing() -> None:
     pass
 
 
+def bounded(depth: int) -> deque[Any]:
+    """Return a queue of the last `depth` items, or of ALL: a bare deque, to which a network appends without Python."""
+    return deque(maxlen=depth or None)
+
+
 class Mailbox:
     """Store of one receiver until its turn comes: the last `depth`, or ALL. The oldest is dropped, and counted.
 
@@ -55,8 +60,8 @@ class Mailbox:
         prepare: Callable[[Any], Any] | None = None,
     ) -> None:
         self.depth = depth
-        self.waiting: deque[Any] = deque(maxlen=depth or None)
-        """Samples that wait, oldest first: a bare deque, so that a network may append to it without Python code."""
+        self.waiting = bounded(depth)
+        """Samples that wait, oldest first."""
         self.dropped = 0
         """Number of items that gave way to newer ones."""
         self.listed = False

