@@ -222,7 +222,8 @@ def main() -> None:
             found[each.name].append(play(each, options))
             print(f"    {each.name}: {found[each.name][-1]}", file=sys.stderr, flush=True)
     print(
-        f"{options.processes} processes of {options.nodes} nodes, s; median of {options.rounds} rounds (least, most), ratio"
+        f"{options.processes} processes of {options.nodes} nodes, s;"
+        f" median of {options.rounds} rounds (least, most), ratio"
     )
     for name, figures in found.items():
         show(name, figures, found[contenders[0].name])

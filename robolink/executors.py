@@ -242,7 +242,7 @@ class Executor:
                     group.ending_execution(entity)
 
     def run_coroutine(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> None:
-        """Begin with the coroutine that the callback of `entity` has returned; its group is busy until it ends."""
+        """Begin with the `coroutine` that the callback of `entity` has returned; its group is busy until it ends."""
         task: Task[Any] = Task(coroutine, executor=self)
         TaskRunner(task, self, entity).execute(task)
 

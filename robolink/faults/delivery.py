@@ -65,7 +65,7 @@ class LinkFault:
         self._double = _Chance(fault.duplication, draws("duplication"))
         is_plain = not (self._latency or spread or self._in_burst)
         self.plain: _Plain | None = (report, *self._loss, *self._double) if is_plain else None
-        """What a fault is made of that only loses and doubles; None for others."""
+        """Report and chances of a fault that only loses and doubles; None for others."""
         self.delays: Callable[[tuple[int, ...]], tuple[int, ...]] = (
             self._delays if self.plain is None else _plain_delays(self.plain)
         )

@@ -1,4 +1,4 @@
-"""How exactly the threads of this process sleep."""
+"""Exact sleeps of the threads of this process."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from robolink.transport.base import Handle, Sink
 from robolink.transport.gates import close_gate, make_gate
 
 _TYPES = "rcl_interfaces::srv::dds_::"
-"""How the types of these services begin in a key."""
+"""Beginning of the types of these services in a key."""
 
 
 def group_of(key: str) -> str:
