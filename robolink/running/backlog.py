@@ -109,7 +109,7 @@ class Sequence:
                 self._last[gid] = sequence
                 return
             if self._before is None:  # what was dropped before the first that is taken makes no gap
-                self._before = self._mailbox.dropped
+                self._before = self._mailbox.dropped_before_last
             missing = self._gaps.before(unpack_attachment(attachment))
             self._missing += missing
         if missing > 0:

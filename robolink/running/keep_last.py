@@ -19,7 +19,7 @@ import itertools
 import time
 import weakref
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -75,7 +75,9 @@ class KeepLast(Mailbox):
         waiting = self.waiting
         self.arrives_for = weakref.ref(receiver, lambda _: waiting.clear())
         """Returns the receiver, while there is one."""
-        self._last = self._dropped = 0
+        self._taken = 0, 0
+        """Number of the last message that was taken, and how many had been dropped before it: one pair, so that another
+        thread reads both of one moment."""
         self._turns: int | None = None
         """Number of turns to come, where each message has one: in a waitable, or an executor without rounds."""
         self.in_flood = False
@@ -85,7 +87,8 @@ class KeepLast(Mailbox):
         self._notify = functools.partial(self.sink.__call__, None)
         self._notices: defaultdict[int, Any] = defaultdict(self._notify)
         self._count = itertools.count(1).__next__
-        self._with_one_notice = self._storing(functools.partial(self._notices.__getitem__, _NOTICED))
+        self._notify_once = functools.partial(self._notices.__getitem__, _NOTICED)
+        self._with_one_notice = self._storing(self._notify_once)
         self.entrance: functools.partial[Any] = functools.partial(self._with_one_notice)
         """Sink for the network."""
         self.put = self.entrance
@@ -109,18 +112,29 @@ class KeepLast(Mailbox):
     def _with_a_notice_for_several(self) -> Any:
         together = min(self.depth * 4 // 5, MOST)  # some more come until they are taken
         nothing = functools.partial(int)
-        after = functools.partial(time.sleep, PAUSE) if sleep_exactly() else nothing
-        actions = itertools.cycle([*[nothing] * (together - 2), self._notify, after])
-        return self._storing(map(functools.partial.__call__, actions).__next__)
+        actions = [*[nothing] * (together - 2), self._notify, nothing]
+        if sleep_exactly():
+            # The flood may end during the pause, and the message is not stored before: then it puts a notice, too.
+            pause = zip(_calls(functools.partial(time.sleep, PAUSE)), _calls(self._notify_once), strict=True)
+            actions[-1] = functools.partial(next, pause)
+        return self._storing(_calls(*actions).__next__)
 
     @property
     def dropped(self) -> int:  # type: ignore[override] # counted when it is read, here
         """Number of messages that gave way to newer ones."""
-        try:
-            oldest: int = self.waiting[0].number
-        except IndexError:  # nothing waits
-            return self._dropped
-        return self._dropped + oldest - self._last - 1
+        while True:
+            last, dropped = taken = self._taken
+            try:
+                oldest: int = self.waiting[0].number
+            except IndexError:  # nothing waits
+                return dropped
+            if self._taken is taken:  # else another one was taken meanwhile, and `oldest` lies beyond it
+                return dropped + oldest - last - 1
+
+    @property
+    def dropped_before_last(self) -> int:
+        """Number of messages that had given way when the last one was taken."""
+        return self._taken[1]
 
     def begin(self, queue: ReadyQueue[Any], receiver: Receiver, *, has_turn: bool, has_turns: bool) -> None:
         """Announce what waits, and what comes, to an executor.
@@ -199,10 +213,11 @@ class KeepLast(Mailbox):
                 self._rest()
             return NOTHING
         number = stored.number
-        if number != self._last + 1:
-            self._dropped += number - self._last - 1
+        last, dropped = self._taken
+        gap = number - last - 1
+        self._taken = number, dropped + gap
+        if gap:
             receiver.overflowed()
-        self._last = number
         if self._turns is None:
             if waiting and queue is not None:
                 self.listed = True
@@ -222,7 +237,7 @@ class KeepLast(Mailbox):
             now = time.perf_counter()
             is_flooded |= now - self._since < MANY * BRISK
             self._since = now
-        if is_flooded and queue is not None and self.depth >= SEVERAL:
+        if is_flooded and queue is not None and queue.is_gathered and self.depth >= SEVERAL:
             self.in_flood = True
             self._enter(self._with_a_notice_for_several)
             queue.flooded.append(self)
@@ -234,3 +249,8 @@ class KeepLast(Mailbox):
             self._notices.pop(_NOTICED, None)
             if self.waiting:
                 self._notices[_NOTICED]  # what it lacks is made, by putting a notice
+
+
+def _calls(*actions: Callable[[], object]) -> Iterator[object]:
+    """Return an endless iterator in C that calls the next of these partials in turn."""
+    return map(functools.partial.__call__, itertools.cycle(actions))  # type: ignore[arg-type]

@@ -123,6 +123,8 @@ class ReadyQueue(Generic[EntityT]):
         """True if tasks were the last to have turns."""
         self.postponed: deque[EntityT] = deque()
         """Tasks to be run again in a moment."""
+        self.is_gathered = False
+        """True if whoever waits here calls `gather` and `calm`: only then may a mailbox be in a flood."""
         self.flooded: list[Flooded] = []
         """Mailboxes that a flood fills: they do not tell of each message."""
         self.pollables: list[Any] = []

@@ -47,6 +47,7 @@ class Waiting:
         """Takes what is ready; None if there is nothing that may run now."""
         self.take_at_once: Callable[..., Taken | None] = queue.take_at_once
         """Takes what has just arrived, if nothing else waits; else None."""
+        queue.is_gathered = True
         self.pause = context.time.wait
         """Waits for an arrival, until a moment of steady time at most."""
 

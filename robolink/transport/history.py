@@ -71,6 +71,11 @@ class Mailbox:
         if prepare is not None:
             self.put = _preparing(prepare, self.put)
 
+    @property
+    def dropped_before_last(self) -> int:
+        """Number of items that had given way when the last one was taken."""
+        return self.dropped
+
     def take(self) -> Any:
         """Take the oldest. Raises IndexError if there is none."""
         return self.waiting.popleft()

@@ -33,7 +33,7 @@ class Rig:
         self.parking = Inbox()
         self.receiver = Recorded(self.parking, depth, threaded=True)
         queue: ReadyQueue[Any] = ReadyQueue(Inbox(), time.perf_counter_ns)
-        queue.in_rounds = in_rounds
+        queue.in_rounds, queue.is_gathered = in_rounds, True
         self.queue = queue
         self.loop: Any = SimpleNamespace(_queue_=queue)
         self.sent = 0
