@@ -42,8 +42,9 @@ def uniform(seed: int, *names: str) -> Callable[[], float]:
 class Scheduler(Protocol):
     """Protocol of a scheduler on a time base: VirtualTime."""
 
-    _now: int
-    """The monotonic time in ns, for what is asked for each message."""
+    @property
+    def _now(self) -> int:
+        """Monotonic time in ns, as an attribute for what reads it for each message."""
 
     def steady(self) -> int:
         """Return the monotonic time in ns."""
