@@ -9,8 +9,8 @@ import pytest
 from robolink.impl.log_output import Record
 from robolink.networks.settings import LONGEST_WAIT
 from robolink.transport import zenoh_handles
-from robolink.transport.zenoh_declare import Publishers
 from robolink.transport.pieces import LARGE
+from robolink.transport.zenoh_declare import Publishers
 from robolink.transport.zenoh_handles import Holdings, ZenohOutlet
 from tests.support.transports import CHATTER
 
