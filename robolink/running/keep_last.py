@@ -222,22 +222,28 @@ class KeepLast(Mailbox):
             if waiting and queue is not None:
                 self.listed = True
                 queue.ready.append(receiver)
-            else:
-                if not self.in_flood:
+            else:  # `_rest` and the usual case of `_look_at_pace` written out: a message of its own comes here
+                self._rests += 1
+                if number - self._rested >= SEVERAL or not self._rests % MANY:
                     self._look_at_pace(number, queue)
-                self._rest()
+                self._rested = number
+                self.listed = False
+                if not self.in_flood:
+                    self._notices.pop(_NOTICED, None)
+                    if waiting:
+                        self._notify_once()
         return stored.content
 
     def _look_at_pace(self, number: int, queue: ReadyQueue[Any] | None) -> None:
         """Begin a flood if messages come several at a time, or many one by one."""
-        self._rests += 1
         is_flooded = number - self._rested >= SEVERAL
-        self._rested = number
         if not self._rests % MANY:
             now = time.perf_counter()
             is_flooded |= now - self._since < MANY * BRISK
             self._since = now
-        if is_flooded and queue is not None and queue.is_gathered and self.depth >= SEVERAL:
+        if not is_flooded or self.in_flood or self.depth < SEVERAL:
+            return
+        if queue is not None and queue.is_gathered:
             self.in_flood = True
             self._enter(self._with_a_notice_for_several)
             queue.flooded.append(self)
@@ -248,7 +254,7 @@ class KeepLast(Mailbox):
         if not self.in_flood:
             self._notices.pop(_NOTICED, None)
             if self.waiting:
-                self._notices[_NOTICED]  # what it lacks is made, by putting a notice
+                self._notify_once()
 
 
 def _calls(*actions: Callable[[], object]) -> Iterator[object]:

@@ -33,7 +33,6 @@ from robolink.message import (
     type_name,
 )
 from tests.support import ros_test_types as ros
-from tools.interface_stubs import stale, stubs
 
 DATA = Path(__file__).parents[1] / "data"
 ALL_HASHES: dict[str, str] = json.loads((DATA / "type_hashes.json").read_text())
@@ -148,8 +147,11 @@ with ThreadPoolExecutor(8) as pool:
     subprocess.run([sys.executable, "-c", program], check=True)
 
 
+@pytest.mark.processes
 def test_stubs_are_fresh() -> None:
-    assert stale(stubs()) == [], "run: python tools/interface_stubs.py"
+    # In a process of its own, as a developer runs it: what other tests make of these types does not count.
+    checked = subprocess.run([sys.executable, "tools/interface_stubs.py", "--check"], capture_output=True, text=True)
+    assert (checked.returncode, checked.stderr) == (0, "")
 
 
 def test_every_class_says_what_it_means() -> None:
