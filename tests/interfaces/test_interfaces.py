@@ -78,7 +78,7 @@ def defined() -> Iterator[Any]:
 
 def messages_in(interface: Any) -> list[Any]:
     """The messages that are written in a class: itself, or the parts of a service or an action."""
-    return [interface.__dict__[part] for part in PARTS if part in interface.__dict__] or [interface]
+    return [getattr(interface, part) for part in PARTS if part in interface.__dict__] or [interface]
 
 
 def test_hashes_are_those_of_ros() -> None:
@@ -155,8 +155,8 @@ def test_stubs_are_fresh() -> None:
 
 
 def test_every_class_says_what_it_means() -> None:
-    parts = [cls.__dict__.get(part) for cls in defined() for part in PARTS]
-    classes = [*defined(), *filter(None, parts)]
+    parts = [getattr(cls, part) for cls in defined() for part in PARTS if part in cls.__dict__]
+    classes = [*defined(), *parts]
     assert len(classes) > len(ALL)
     assert [type_name(cls) for cls in classes if not cls.__dict__.get("__doc__")] == []
 
