@@ -49,7 +49,7 @@ its sender drops messages of other topics, too.
 """
 
 _NOTICED = 0
-"""The one key of the notices: there while a notice is under way, and while the receiver has a turn to come."""
+"""Only key of the notices: there while a notice is under way, and while the receiver has a turn to come."""
 
 
 class KeepLast(Mailbox):

@@ -30,7 +30,7 @@ PERIOD = 1.0
 
 
 class SharedPool:
-    """The pool of a process: made when it is needed first, in some 20 ms, and kept until the process ends.
+    """Pool of a process: made when it is needed first, in some 20 ms, and kept until the process ends.
 
     It is never freed, so that a message that was just sent can still be read, and no forked child removes its file.
 
