@@ -177,7 +177,10 @@ def _put(fullname: str, room: str, _new: ModuleType) -> None:
     if holds_types:
         set_home(package, kind, functools.partial(_home, fullname))
     own = vars(module).get("__getattr__")
-    if module is not sys.modules["robolink"] and not isinstance(own, functools.partial):
+    known_as = own.args[0] if isinstance(own, functools.partial) else ""
+    if module is not sys.modules["robolink"] and (not known_as or fullname.count(".") < known_as.count(".")):
+        # Of several names that of the package: what it lacks is looked for in launch_ros.actions, not in a part of it.
+        own = own.args[2] if isinstance(own, functools.partial) else own
         module.__getattr__ = functools.partial(_lacked, fullname, module, own)
 
 

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -230,3 +231,12 @@ def test_run_hides_a_real_rclpy_and_shows_what_is_missing(tmp_path: Path) -> Non
     code, out, err = python(*run, "run", str(bad), cwd=tmp_path, **path)
     assert (code, out, err.count('  File "')) == (1, "", 1)
     assert f"{VERSION} has no image_transport; publish and subscribe to sensor_msgs.msg.Image" in err
+
+
+@pytest.mark.usefixtures("compat")
+def test_a_module_of_several_names_says_what_it_lacks_under_the_package_s() -> None:
+    maker = importlib.import_module("robolink.compat.maker")
+    for name in ("launch_ros.actions.ros_timer", "launch_ros.actions"):
+        maker.room_fill(name)(ModuleType(name))
+    lacked = raised("from launch_ros.actions import Nod")
+    assert str(lacked) == f"{VERSION} has no launch_ros.actions.Nod (did you mean 'Node'?)"

@@ -33,7 +33,6 @@ def follow(block: Block, tree: Path) -> str:
     before = file.read_text(encoding="utf-8") if file.exists() else ""
     assert bool(before) == (block.language == "diff" or block.title.endswith(APPENDED)), name
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.unlink(missing_ok=True)  # it may be a link to the file of this tree
     if block.language == "diff":
         lines = block.text.splitlines(keepends=True)
         old, new = ("".join(each[1:] for each in lines if each[0] in kept) for kept in (" ", " +"))
@@ -57,17 +56,10 @@ def run_tests(tree: Path, *words: str) -> None:
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Iterator[Path]:
-    """A copy of the tree, by links where the file system has them."""
-
-    def copy(source: str, target: str) -> None:
-        try:
-            os.link(source, target)
-        except OSError:
-            shutil.copyfile(source, target)
-
+    """A copy of the tree. Not by links: what a recipe's tool writes would be written in this tree as well."""
     for name in COPIED:
         ignored = shutil.ignore_patterns("__pycache__", "node_modules")
-        shutil.copytree(ROOT / name, tmp_path / name, copy_function=copy, ignore=ignored)
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=ignored)
     shutil.copyfile(ROOT / "pyproject.toml", tmp_path / "pyproject.toml")
     yield tmp_path
     shutil.rmtree(tmp_path, ignore_errors=True)
