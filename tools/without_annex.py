@@ -44,7 +44,12 @@ ANNEXES = {
         "tests/docs/test_learn_*.py",
         "tests/support/lines_left_out.py",
     ],
-    "nav2": ["robolink/counterparts/nav2_*", "tests/counterparts/test_nav2_*"],
+    "nav2": [
+        "robolink/counterparts/nav2_*",
+        "robolink/navigation",
+        "tests/counterparts/test_nav2_*",
+        "tests/navigation",
+    ],
     "race": ["robolink/race", "robolink/cli/race", "tests/race", "tests/cli/race"],
     "turtlesim": [
         "robolink/counterparts/turtlesim",
