@@ -24,12 +24,9 @@ def keep_unknown(node: Node, *, except_below: tuple[str, ...] = ()) -> list[str]
     Returns:
         The names, sorted.
     """
-    names = sorted(
-        name
-        for name in node._parameter_overrides
-        if not node.has_parameter(name)
-        and not name.startswith(tuple(f"{each}." for each in (*except_below, "qos_overrides")))
-    )
+    later = tuple(f"{each}." for each in (*except_below, "qos_overrides"))
+    given = node._parameter_overrides
+    names = sorted(name for name in given if not node.has_parameter(name) and not name.startswith(later))
     for name in names:
         node.declare_parameter(name, given[name].value, UNUSED)
     if names:
