@@ -15,7 +15,7 @@ STYLE = Path(str(robolink.view.__file__)).with_name("page").joinpath("style.css"
 GROUNDS = ("bg", "panel", "ground", "field")
 TEXTS = ("fg", "dim", "accent", "good", "warn", "bad")
 SERIES = tuple(f"c{number}" for number in range(1, 9))
-ROLES = ("scan", "path", "goal", "trail", "camera")
+ROLES = ("scan", "path", "local", "particles", "goal", "trail", "camera")
 MARKS = (*SERIES, *ROLES, "robot", "axis-x", "axis-y")
 
 Triple = tuple[float, float, float]

@@ -1,6 +1,7 @@
 // World panel: the world from above, with maps, robots, lidar, paths and markers; goal and initial pose by click.
 
 import { button, h, isTyping } from "../dom.js";
+import { compose, IDENTITY, inverse, yawOf } from "../tf.js";
 import { arrow, cased, degrees, dots, isGoal } from "./world_layers.js";
 import { faint } from "./world_pixels.js";
 import { Scene } from "./world_scene.js";
@@ -240,8 +241,16 @@ class World {
     };
   }
 
+  /** A pose of the fixed frame as navigation takes it: in the frame map, where that is connected. */
+  _inMap({ x, y, yaw }) {
+    const { tf } = this.app, map = tf.names().includes("map") && tf.lookup("map");
+    if (!map) return { fixed: tf.fixed, x, y, yaw };
+    const pose = compose(inverse(map), { ...IDENTITY, x, y, qz: Math.sin(yaw / 2), qw: Math.cos(yaw / 2) });
+    return { fixed: "map", x: pose.x, y: pose.y, yaw: yawOf(pose) };
+  }
+
   _send() {
-    const { x, y, yaw } = this.scene.wanted, { type } = TOOLS[this.tool], topic = this.target.value, { fixed } = this.app.tf;
+    const { type } = TOOLS[this.tool], topic = this.target.value, { fixed, x, y, yaw } = this._inMap(this.scene.wanted);
     const at = this.app.clock(), sec = Math.floor(at / 1000);
     const header = { stamp: { sec, nanosec: Math.floor((at - sec * 1000) * 1e6) }, frame_id: fixed };
     const pose = { position: { x, y, z: 0 }, orientation: { x: 0, y: 0, z: Math.sin(yaw / 2), w: Math.cos(yaw / 2) } };
@@ -301,6 +310,10 @@ const FORMS = {
     context.beginPath();
     arrow(context, 7, MIDDLE, 0, 30);
     cased(context, colours, colour, 3);
+  },
+  swarm(context, colour) {
+    context.fillStyle = colour;
+    for (const [x, y] of [[22, MIDDLE], [17, 8], [26, 7], [29, 14], [16, 15], [23, 18], [11, 11], [35, 10]]) context.fillRect(x - 1.5, y - 1.5, 3, 3);
   },
   tf(context, _, { colours }, names = ["axis-x", "axis-y"]) {
     names.forEach((name, i) => {

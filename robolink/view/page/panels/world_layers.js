@@ -16,6 +16,8 @@ const ALL_ROUND = 6.2; // radians of a scan that has no gap
 const SHOWN_BEAMS = 60; // of a scan, as lines
 const SIGHT = 1.2; // metres that a camera's view is drawn
 const REACHED = 0.35; // metres from a goal at which it is reached
+const MOST_PARTICLES = 5000;
+const FAINTEST = 0.25, STEPS = 4; // opacity of a particle without weight; steps of weight that are told apart
 
 /** Axes of a pose seen from above: [x, y, xx, xy, yx, yy]. */
 function seen(pose) {
@@ -156,6 +158,9 @@ function byHeight(z) { // from blue at the floor to red at two metres
 }
 
 class Grid extends Layer {
+  /** Place in the pile of grids: costmaps lie on maps, and that around the robot on top. */
+  get above() { return /costmap/.test(this.topic.name) ? 1 + /local/.test(this.topic.name) : 0; }
+
   update(message, scene) {
     super.update(message);
     const { width, height } = message.info;
@@ -163,7 +168,7 @@ class Grid extends Layer {
     this.canvas.width = Math.max(1, width);
     this.canvas.height = Math.max(1, height);
     const context = this.canvas.getContext("2d"), image = context.createImageData(this.canvas.width, this.canvas.height);
-    const colours = /costmap/.test(this.topic.name) ? scene.costs : scene.occupancy, pixels = new Uint32Array(image.data.buffer), { data } = message;
+    const colours = this.above ? scene.costs : scene.occupancy, pixels = new Uint32Array(image.data.buffer), { data } = message;
     for (let i = 0; i < data.length; i++) pixels[i] = colours[data[i] & 0xff];
     context.putImageData(image, 0, 0);
     this.colours = (colours === scene.costs ? [20, 60, 99, 100] : [0, 50, 100]).map((value) => shown(colours[value]));
@@ -315,8 +320,7 @@ class Poses extends Layer {
     context.beginPath();
     context.ellipse(view.toX(pose.x), view.toY(pose.y), ELLIPSE * Math.sqrt(middle + rest) * view.scale, ELLIPSE * Math.sqrt(middle - rest) * view.scale,
       -(turn + Math.atan2(2 * b, a - d) / 2), 0, 2 * Math.PI);
-    context.lineWidth = 1;
-    context.stroke();
+    cased(context, scene.colours, this.colour, 1.5 * view.ratio);
   }
 
   bounds(scene) { return around(this._poses(scene)); }
@@ -324,6 +328,47 @@ class Poses extends Layer {
   hover(x, y, reach, scene) {
     const found = this._poses(scene).find((each) => Math.hypot(each.x - x, each.y - y) < reach);
     return found ? `(${found.x.toFixed(2)}, ${found.y.toFixed(2)}, ${degrees(yawOf(found))})` : null;
+  }
+}
+
+/** Layer of a localization filter's particles: short strokes as they look, fainter with less weight. */
+class Particles extends Layer {
+  update(message, scene) {
+    super.update(message);
+    const { particles } = message, stride = Math.max(1, Math.ceil(particles.length / MOST_PARTICLES)), frame = this.frame(scene);
+    const most = particles.reduce((greatest, { weight }) => Math.max(greatest, weight), 0);
+    this.steps = Array.from({ length: STEPS }, () => []);
+    this.poses = [];
+    for (let i = 0; i < particles.length; i += stride) {
+      const pose = compose(frame, poseOf(particles[i].pose)), share = most > 0 ? particles[i].weight / most : 1;
+      const place = { x: pose.x, y: pose.y, yaw: yawOf(pose) };
+      this.steps[Math.max(0, Math.ceil(share * STEPS) - 1) || 0].push(place);
+      this.poses.push(place);
+    }
+  }
+
+  draw(context, { view }) {
+    const length = Math.min(12 * view.ratio, Math.max(5 * view.ratio, 0.12 * view.scale)), dot = 2 * view.ratio;
+    this.steps.forEach((places, step) => {
+      const alpha = FAINTEST + ((1 - FAINTEST) * step) / (STEPS - 1);
+      context.fillStyle = faint(this.colour, alpha);
+      context.strokeStyle = faint(this.colour, 0.6 * alpha);
+      context.lineWidth = view.ratio;
+      context.beginPath();
+      for (const { x, y, yaw } of places) {
+        const px = view.toX(x), py = view.toY(y);
+        context.moveTo(px, py);
+        context.lineTo(px + length * Math.cos(yaw), py - length * Math.sin(yaw));
+        context.fillRect(px - dot / 2, py - dot / 2, dot, dot);
+      }
+      context.stroke();
+    });
+  }
+
+  bounds() { return around(this.poses); }
+
+  hover(x, y, reach) {
+    return this.poses.some((each) => Math.hypot(each.x - x, each.y - y) < reach) ? `${this.message.particles.length}` : null;
   }
 }
 
@@ -431,6 +476,7 @@ export const KINDS = {
   "geometry_msgs/msg/PolygonStamped": { make: Outline, rate: 20, order: 6, form: "area" },
   "geometry_msgs/msg/PointStamped": { make: Outline, rate: 20, order: 6, form: "ring" },
   "geometry_msgs/msg/PoseStamped": { make: Poses, rate: 20, order: 7, form: "arrow", role: "goal" },
-  "geometry_msgs/msg/PoseWithCovarianceStamped": { make: Poses, rate: 20, order: 7, form: "arrow" },
+  "geometry_msgs/msg/PoseWithCovarianceStamped": { make: Poses, rate: 20, order: 7, form: "arrow", role: "particles" },
+  "nav2_msgs/msg/ParticleCloud": { make: Particles, rate: 5, order: 3, form: "swarm", role: "particles" },
   "geometry_msgs/msg/PoseArray": { make: Poses, rate: 10, order: 7, form: "arrow" },
 };

@@ -9,8 +9,9 @@ import { around } from "./world_view.js";
 const ROBOTS = 5; // between the orders of layers: robots are drawn here
 const SERIES = 8; // colours --c1 to --c8
 const MOST_NAMES = 40, MOST_SMOOTH = 30; // names that are written; robots whose scans and trails are drawn by smooth paths
-const ROLES = { back: "ground", halo: "ground", text: "fg" }, NAMES = ["grid", "dim", "robot", "goal", "scan", "trail", "path", "camera", "axis-x", "axis-y"];
-const QUIET = /(^|\/)(ground_truth|depth\/camera_info)$/; // shown only where it is switched on: what is like another layer
+const ROLES = { back: "ground", halo: "ground", text: "fg" }, NAMES = ["grid", "dim", "robot", "goal", "scan", "trail", "path", "local", "particles", "camera", "axis-x", "axis-y"];
+const QUIET = /(^|\/)(ground_truth|depth\/camera_info|initialpose)$/; // shown only where it is switched on: what is like another layer
+const LOCAL = /(^|[/_])(local|transformed|optimal)/; // paths of the next seconds, beside the one to the goal
 
 export class Scene {
   /** @param view camera  @param off, on names of layers that are switched off, and on against the default */
@@ -54,11 +55,12 @@ export class Scene {
     const spaces = entries.filter(([, { topic }]) => topic.type === "nav_msgs/msg/Odometry").map(([name]) => name.slice(0, name.lastIndexOf("/") + 1));
     this.spaces = [...new Set(spaces)];
     let next = 1; // the first one is like that of trails
-    for (const [name, { layer, kind: { role } }] of entries) {
+    for (const [name, { layer, kind, topic }] of entries) {
+      const role = kind.role === "path" && LOCAL.test(name) ? "local" : kind.role, key = `${topic.type} ${role}`;
       const own = this.spaces.length > 1 && this.spaceColour(name);
-      const isFirst = role && !used.has(role) && !QUIET.test(name);
+      const isFirst = role && !used.has(key) && !QUIET.test(name);
       layer.colour = own || (isFirst ? this.colours[role] : this.series[next++ % SERIES]);
-      if (isFirst) used.add(role);
+      if (isFirst) used.add(key);
     }
     this.groundChanged = this.dirty = true;
   }
@@ -220,7 +222,7 @@ export class Scene {
     this.loose.clear();
     this.tfVersion = this.frames.version;
     this.trails = this.shows("trails");
-    const visible = this._visible().sort((a, b) => a.kind.order - b.kind.order), { pixels, context } = this, { size } = this.bodies;
+    const visible = this._visible().sort((a, b) => a.kind.order - b.kind.order || (a.layer.above ?? 0) - (b.layer.above ?? 0)), { pixels, context } = this, { size } = this.bodies;
     this.bodies.clear();
     this._parts(visible, "bodies", this);
     const robots = this.drawn = this.robots();
@@ -364,10 +366,10 @@ export class Scene {
   }
 }
 
-/** Colour of a cost as rviz has it: nothing at 0, from blue to red, cyan at 99, magenta at 100. */
+/** Colour of a cost, of rviz's kind but so that the map is seen through it: nothing at 0, from blue to red, cyan at 99, magenta at 100. */
 function cost(value) {
   if (value === 0 || value > 100) return 0;
-  if (value === 100) return 0xb0ff00ff;
-  if (value === 99) return 0xb0ffff00;
-  return ((0x90000000 | (Math.round(255 - 2.55 * value) << 16) | Math.round(2.55 * value)) >>> 0);
+  if (value === 100) return 0xa0ff00ff;
+  if (value === 99) return 0x60ffff00;
+  return ((Math.round(40 + 0.8 * value) << 24) | (Math.round(255 - 2.55 * value) << 16) | Math.round(2.55 * value)) >>> 0;
 }
