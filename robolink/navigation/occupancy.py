@@ -142,7 +142,9 @@ def _traced(begin: Floats, ends: Floats, width: int) -> npt.NDArray[np.int64]:
     row = (begin[1] + share * way[beam, 1].astype(np.float32)).astype(np.int64)
     cells = row * width + column
     last = np.floor(ends).astype(np.int64)
-    found: npt.NDArray[np.int64] = cells[cells != (last[:, 1] * width + last[:, 0])[beam]]
+    fits = cells != (last[:, 1] * width + last[:, 0])[beam]
+    fits[1:] &= (cells[1:] != cells[:-1]) | (number[1:] == 0)  # a beam counts once
+    found: npt.NDArray[np.int64] = cells[fits]
     return found
 
 
