@@ -77,7 +77,7 @@ def test_the_next_exercise_is_checked_at_once_and_a_save_checks_its_own(tmp_path
         assert made.wait_for("exercise", name="stop")["report"]["passed"]
         state = made.wait_for("learn", current="stop", checking=None)
         assert state["saves"] == 1
-        assert state["heading"] == "1 of 28 exercises done"
+        assert state["heading"] == "1 of 31 exercises done"
         states = {each["name"]: each["state"] for each in state["exercises"]}
         assert (states["walk"], states["stop"], states["react"]) == ("next", "done", "open")
 
@@ -140,9 +140,9 @@ def test_progress_and_language_of_another_command_are_shown(tmp_path: Path) -> N
         made.wait_for("learn", checking=None)
         other = start_folder(str(tmp_path))
         other.finish(other.chosen("hello"))
-        assert made.wait_for("learn", heading="1 of 28 exercises done")
+        assert made.wait_for("learn", heading="1 of 31 exercises done")
         other.speak("pt")
-        assert made.wait_for("learn", language="pt")["heading"] == "1 de 28 exercícios feitos"
+        assert made.wait_for("learn", language="pt")["heading"] == "1 de 31 exercícios feitos"
 
 
 def test_another_language_checks_again_in_it(tmp_path: Path) -> None:

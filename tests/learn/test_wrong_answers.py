@@ -154,6 +154,33 @@ WRONG = [
         "standing, it asked for a turn of 30.0 rad/s, and not of 0.5",
     ),
     ("follow_wall", "linear.x = 0.3", "linear.x = 1.0", "it asked for 1.0 m/s, and not for 0.3"),
+    (
+        "particles",
+        "random.gauss(metres, 0.05)",
+        "metres",
+        "spread by 0.05 m as they drive, and spread by 0.000 m",
+    ),
+    ("particles", "x + random", "random", "and are at 0.50 m on average, not at 2.50"),
+    ("particles", "beside == sees_door", "beside", "a particle beside a door weighs 0.90, and one beside a wall 0.10"),
+    ("particles", "else 0.1", "else 0.0", "a weight is 0.00: after one wrong look the right guess would be gone"),
+    ("particles", "k=len(particles)", "k=1", "there were 1000 particles, and after resample there are: 1"),
+    ("particles", "particles, weights, k", "particles, k", "75 % of the particles, and has 48 %"),
+    ("particles", "return weights", "return None", "has no len()"),
+    (
+        "estimate",
+        "        if self.publisher.get_subscription_count() == 0:\n            return\n",
+        "",
+        "and nothing came",
+    ),
+    ("estimate", "        self.timer.cancel()\n", "", "it came 7 times"),
+    ("estimate", "math.sin(math.pi / 4)", "math.pi / 2", "its orientation has the length 1.72, and not 1"),
+    ("estimate", "math.pi / 4", "math.pi / 2", "it looks to 180 degrees, and not to 90"),
+    ("estimate", "covariance[35]", "covariance[5]", "are 0.25, 0.25 and 0.00, and not 0.25, 0.25 and 0.07"),
+    ("tour", '"map"', '"odom"', "its frame is 'odom', and not 'map'"),
+    ("tour", "reached += 1", "reached += 1\n        else:\n            break", "and then came: -"),
+    ("tour", "        if navigator.getResult() == TaskResult.SUCCEEDED:\n    ", "", "and has: reached 3 of 3"),
+    ("tour", "(5.0, 3.0), (1.0, 4.0)", "(1.0, 4.0), (5.0, 3.0)", "the next goal was (1.0, 4.0), and not (5.0, 3.0)"),
+    ("tour", "PLACES:", "PLACES[:0]:", "no goal came on the action navigate_to_pose"),
 ]
 
 
