@@ -5,11 +5,25 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from robolink.interfaces.geometry_msgs.msg import PoseStamped
+from robolink.interfaces.geometry_msgs.msg import Pose, PoseStamped
 from robolink.node import Node
 from robolink.tf2 import Buffer, TransformException
 from robolink.tf2.geometry import do_transform_pose_stamped
 from robolink.time import Time
+
+FARTHEST = 1e6
+"""Largest coordinate of a pose, in metres: a place farther away is a mistake."""
+
+
+def fault(pose: Pose) -> str:
+    """Return the mistake of a pose that somebody sent, for people; '' if a robot can be there."""
+    place, turn = pose.position, pose.orientation
+    numbers = (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
+    if not all(abs(each) <= FARTHEST for each in numbers):
+        return f"expected finite numbers, and places within {FARTHEST:g} m, got {pose}"
+    if math.hypot(*numbers[3:]) < 1e-3:
+        return "its orientation is all zero, which is not a quaternion: w is 1 for no rotation"
+    return ""
 
 
 def robot_pose(buffer: Buffer, node: Node, frame: str, base: str, tolerance: float = math.inf) -> PoseStamped:

@@ -154,10 +154,10 @@ class SimpleActionServer:
             self._end(before, ServerGoalHandle.abort)
         return self._current.request
 
-    def terminate_pending_goal(self) -> None:
-        """End the pending goal: cancelled if that was requested, otherwise aborted."""
+    def terminate_pending_goal(self, result: Any = None) -> None:
+        """End the pending goal: cancelled if that was requested, otherwise aborted; None is an empty result."""
         handle, self._pending = self._pending, None
-        self._terminate(handle, None)
+        self._terminate(handle, result)
 
     def terminate_current(self, result: Any = None) -> None:
         """End the current goal: cancelled if that was requested, otherwise aborted; None is an empty result."""
@@ -167,8 +167,7 @@ class SimpleActionServer:
     def terminate_all(self, result: Any = None) -> None:
         """End the current goal and the pending one: cancelled if that was requested, otherwise aborted."""
         self.terminate_current(result)
-        handle, self._pending = self._pending, None
-        self._terminate(handle, result)
+        self.terminate_pending_goal(result)
 
     def succeeded_current(self, result: Any = None) -> None:
         """End the current goal as reached; None is an empty result."""
