@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robolink.geometry.trigonometry import cos_and_sin
 from robolink.sim.arrays import Array, Indices
 from robolink.sim.description import Shape, WorldDescription
 from robolink.sim.quantities import Pose
@@ -28,7 +29,6 @@ from robolink.sim.sensing.scene import (
     standing,
 )
 from robolink.sim.sensors import Lidar
-from robolink.sim.trigonometry import cos_and_sin
 
 NO_CIRCLES = np.zeros((0, 3))
 NO_SEGMENTS = np.zeros((0, 4))

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from robolink.geometry.trigonometry import cos_and_sin, cos_and_sin_of
 from robolink.sim.rendering.pinhole import Array, Bytes, Indices, Packed, cross, dot, packed
 from robolink.sim.scene.solids import Cylinder, Face, Picture, Surfaces
-from robolink.sim.trigonometry import cos_and_sin, cos_and_sin_of
 
 _SMALLEST = 4
 """Smallest side in pixels of a level that is halved again."""

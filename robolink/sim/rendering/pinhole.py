@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from robolink.sim.trigonometry import cos_and_sin_of
+from robolink.geometry.trigonometry import cos_and_sin_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -8,11 +8,11 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from robolink.geometry.trigonometry import cos_and_sin
 from robolink.sim.arrays import Array, Indices, Place
 from robolink.sim.quantities import Pose
 from robolink.sim.sensing.scene import NOBODY, NORMAL, REFLECTANCE, Circles, Surroundings, X, Y
 from robolink.sim.sensors import Lidar
-from robolink.sim.trigonometry import cos_and_sin
 
 # Planar laser scanners, exact and without ray casting: each shape covers one interval of beams.
 #

@@ -1,15 +1,17 @@
 """Cosine and sine by plain arithmetic: the same bits on every machine, whatever its numpy and processor.
 
-For tables that are made once; libraries' own functions are quicker, and differ in the last bit from each other.
+For what a run must repeat to the last bit; libraries' own functions are quicker, and differ there from each other.
 """
 
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
-from robolink.sim.arrays import Array
+Array: TypeAlias = npt.NDArray[np.float64]
 
 _QUARTER = math.pi / 2
 _QUARTER_REST = 6.123233995736766e-17  # what pi/2 has beyond a float
