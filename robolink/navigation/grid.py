@@ -74,20 +74,32 @@ def distances(occupied: npt.NDArray[np.bool_], most_cells: int | None = None) ->
         most_cells: Distance from which on all is alike: larger ones become it. The time grows with it. None finds
             every distance, and infinity everywhere if no cell is occupied.
     """
+    if most_cells is None and not occupied.any():
+        return np.full(occupied.shape, math.inf, np.float32)
+    most = sum(occupied.shape) if most_cells is None else most_cells
+    found: npt.NDArray[np.float32] = np.sqrt(squared_distances(occupied, most), dtype=np.float32)
+    return found
+
+
+def squared_distances(occupied: npt.NDArray[np.bool_], most_cells: int) -> npt.NDArray[np.integer[Any]]:
+    """Return the squares of `distances`, which are whole numbers: a table may be indexed by them.
+
+    Args:
+        occupied: True for occupied cells; rows and columns.
+        most_cells: Distance in cells from which on all is alike: larger ones become it.
+    """
     height, width = occupied.shape
+    # The sum of two squares must fit; half the bytes are twice the speed.
+    kind = np.uint16 if most_cells <= 180 else np.int64 if most_cells > 30_000 else np.uint32
     if not occupied.any():
-        return np.full(occupied.shape, math.inf if most_cells is None else most_cells, np.float32)
-    most = height + width if most_cells is None else most_cells
-    # The sum of two squares of `most` must fit; half the bytes are twice the speed.
-    kind = np.uint16 if most <= 180 else np.int64 if most > 30_000 else np.uint32
-    upright = _down_columns(occupied, most, kind)
+        return np.full(occupied.shape, most_cells * most_cells, kind)
+    upright = _down_columns(occupied, most_cells, kind)
     upright *= upright
     squares = np.empty_like(upright)
     rows = max(_STRIP // max(width, 1), 1)
     for first in range(0, height, rows):
-        _along_rows(upright[first : first + rows], squares[first : first + rows], min(most, width) - 1)
-    found: npt.NDArray[np.float32] = np.sqrt(squares, dtype=np.float32)
-    return found
+        _along_rows(upright[first : first + rows], squares[first : first + rows], min(most_cells, width) - 1)
+    return squares
 
 
 def _down_columns(occupied: npt.NDArray[np.bool_], most: int, kind: type[np.integer[Any]]) -> npt.NDArray[Any]:
