@@ -23,7 +23,7 @@ FARTHEST = 100.0
 
 
 class FootprintError(RobolinkError, ValueError):
-    """A footprint that is no polygon of at least three points."""
+    """A footprint without the polygon of three or more points that it needs."""
 
 
 class Radii(NamedTuple):
