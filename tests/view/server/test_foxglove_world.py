@@ -15,7 +15,11 @@ from typing import Any
 import pytest
 
 from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.nav2_msgs.msg import Particle, ParticleCloud
+from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.parameter import Parameter
+from robolink.qos import DurabilityPolicy, QoSProfile
+from robolink.serialization import serialize_message
 from tests.support import node_modules
 from tests.support.nodefiles import load_node_file
 from tests.support.view_clients import WITHIN, Shown, shown
@@ -23,6 +27,8 @@ from tests.support.view_clients import WITHIN, Shown, shown
 SCRIPT = Path(__file__).with_name("foxglove_world.mjs")
 LAYERS = Path(__file__).parents[3] / "robolink" / "view" / "page" / "panels" / "world_layers.js"
 REFERENCE = Path(__file__).parents[3] / "docs" / "reference" / "view.md"
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 TYPES = {
     "/world/floor": "visualization_msgs/msg/MarkerArray",
@@ -101,6 +107,20 @@ def test_schemas_of_a_simulated_world_are_whole_and_of_standard_packages() -> No
             message = store.deserialize_cdr(client.next(client.subscribe(topic)), name)
             found[topic] = told(message)
     check(found)
+
+
+def test_what_a_navigation_publishes_reaches_others_with_whole_schemas() -> None:
+    cloud = ParticleCloud(particles=[Particle(weight=0.25), Particle(weight=0.75)])
+    costmap = OccupancyGrid(data=[0, 99, 100, -1])
+    costmap.info.width = costmap.info.height = 2
+    with shown() as system, system.client("foxglove.sdk.v1", token=False) as client:
+        for message, topic in ((cloud, "/particle_cloud"), (costmap, "/global_costmap/costmap")):
+            publisher = system.node.create_publisher(type(message), topic, LATCHED)
+            publisher.publish(message)
+            channel = client.channel(topic)
+            assert channel["schemaName"] == type(message).__ros_type__
+            assert serialize_message(message) == client.next(client.subscribe(topic))
+        assert "MSG: nav2_msgs/Particle\n" in client.channel("/particle_cloud")["schema"]
 
 
 def told(value: Any, key: str = "") -> Any:
