@@ -20,6 +20,7 @@ import time
 import weakref
 from collections import defaultdict
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -76,8 +77,7 @@ class KeepLast(Mailbox):
         self.arrives_for = weakref.ref(receiver, lambda _: waiting.clear())
         """Returns the receiver, while there is one."""
         self._taken = 0, 0
-        """Number of the last message that was taken, and how many had been dropped before it: one pair, so that another
-        thread reads both of one moment."""
+        """Number of the last message that was taken, and how many had been dropped before it."""
         self._turns: int | None = None
         """Number of turns to come, where each message has one: in a waitable, or an executor without rounds."""
         self.in_flood = False
@@ -122,14 +122,15 @@ class KeepLast(Mailbox):
     @property
     def dropped(self) -> int:  # type: ignore[override] # counted when it is read, here
         """Number of messages that gave way to newer ones."""
-        while True:
-            last, dropped = taken = self._taken
+        receiver = self.arrives_for()
+        queue = None if receiver is None else receiver._queue_
+        with nullcontext() if queue is None else queue.lock:  # else one that is just being taken would count as dropped
+            last, dropped = self._taken
             try:
                 oldest: int = self.waiting[0].number
             except IndexError:  # nothing waits
                 return dropped
-            if self._taken is taken:  # else another one was taken meanwhile, and `oldest` lies beyond it
-                return dropped + oldest - last - 1
+            return dropped + max(oldest - last - 1, 0)
 
     @property
     def dropped_before_last(self) -> int:
@@ -214,10 +215,10 @@ class KeepLast(Mailbox):
             return NOTHING
         number = stored.number
         last, dropped = self._taken
-        gap = number - last - 1
-        self._taken = number, dropped + gap
-        if gap:
-            receiver.overflowed()
+        if number == last + 1:
+            self._taken = number, dropped
+        else:
+            self._note_gap(number, receiver)
         if self._turns is None:
             if waiting and queue is not None:
                 self.listed = True
@@ -233,6 +234,14 @@ class KeepLast(Mailbox):
                     if waiting:
                         self._notify_once()
         return stored.content
+
+    def _note_gap(self, number: int, receiver: Receiver) -> None:
+        last, dropped = self._taken
+        if number > last:
+            self._taken = number, dropped + number - last - 1
+            receiver.overflowed()
+        else:  # another of the network's threads has stored a later one before it, which counted it as dropped
+            self._taken = last, dropped - 1
 
     def _look_at_pace(self, number: int, queue: ReadyQueue[Any] | None) -> None:
         """Begin a flood if messages come several at a time, or many one by one."""

@@ -269,6 +269,6 @@ class PoolLimit:
             with suppress(OSError):
                 self._remove(self._own)
             get_logger("robolink.transport").info(
-                f"shared memory of {pools} processes is held, living and dead ones: large messages of processes that"
-                " start from now on take the slower way, by TCP"
+                f"{pools} pools of shared memory are held, of living and dead processes: large messages of processes"
+                " that start from now on take the slower way, by TCP"
             )

@@ -7,17 +7,20 @@ that is collected before each message uses the same few places again and again.
 As with Zenoh's own, a place whose reader stands still for 0.1 s may be used again when there is no other; a reader
 checks that after it has copied a message out (`zenoh.py:ZenohTransport.read`). When every place is in use, a message
 goes Zenoh's way.
+
+That holds for a place that is just being filled, too: if the whole process stands still meanwhile, another thread could
+be given it before the first goes on. So one thread fills at a time.
 """
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from typing import Any
 
 import zenoh
 
 from robolink.system import clocks
+from robolink.system.waits import fork_lock
 from robolink.transport import lifetime
 from robolink.transport.pieces import Pieces
 from robolink.transport.shared_memory import LEAST_FREE, POOL, SMALLEST_SHARED, free_space
@@ -41,7 +44,7 @@ class SharedPool:
 
     def __init__(self, make: Callable[[int], Any] | None = None, free: Callable[[], int] = free_space) -> None:
         self._make, self._free = make or zenoh.shm.ShmProvider.default_backend, free
-        self._lock = threading.Lock()
+        self._lock = fork_lock()  # re-entrant: a signal handler may publish, too
         self._provider: Any = None
         self._was_tried = False
         self._policy: Any = None
@@ -55,6 +58,10 @@ class SharedPool:
         """
         if self._provider is None and (self._was_tried or not shares() or not self._begin()):
             return None
+        with self._lock:
+            return self._fill(payload)
+
+    def _fill(self, payload: bytes | Pieces) -> Any:
         self._provider.garbage_collect()
         try:
             place = self._provider.alloc(len(payload), self._policy)

@@ -1,7 +1,8 @@
 """Groups of servers: one declaration with wildcards for the services by which a node's parameters are read and set.
 
 Each declaration is sent to all peers, which store and look up its key: six for each node are half of what nodes
-declare beside their tokens. A call's key, which has no wildcards, reaches the group as it would reach each server.
+declare beside their tokens. A call's key, which has no wildcards, reaches the group as it would reach each server; one
+that has some gets no answer.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+from robolink.system.waits import fork_lock
 from robolink.transport.base import Handle, Sink
 from robolink.transport.gates import close_gate, make_gate
 
@@ -32,7 +34,7 @@ class Groups:
 
     def __init__(self) -> None:
         self._groups: dict[str, _Group] = {}
-        self._lock = threading.Lock()
+        self._lock = fork_lock()  # re-entrant: a signal handler may end a node while another one is made
 
     def serve(self, key: str, sink: Sink, declare: Callable[[str, Sink], Handle]) -> Handle | None:
         """Serve a key in its group.

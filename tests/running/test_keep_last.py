@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gc
+import threading
 import time
 import weakref
+from collections import deque
 from types import SimpleNamespace
 from typing import Any
 
@@ -166,6 +168,48 @@ def test_each_drop_is_told() -> None:
     rig.arrive(12)
     rig.drain()
     assert (rig.receiver.overflows, rig.receiver.mailbox.dropped) == (1, 7)
+
+
+def test_one_that_another_thread_has_overtaken_is_taken_behind_it_and_no_drop() -> None:
+    rig = Rig(10)
+    inbox: Any = rig.queue.inbox
+    put, rivals = inbox._arrival, [rig]
+
+    def put_and_give_way(*arguments: Any) -> Any:
+        for rival in (rivals.pop() for _ in [*rivals]):
+            rival.arrive(1)
+        return put(*arguments)
+
+    inbox._arrival = put_and_give_way
+    rig.attach()
+    rig.receiver.sink("overtaken")
+    kept, dropped = rig.receiver.mailbox, list[int]()
+    while rig.take():
+        dropped.append(kept.dropped)
+    assert rig.got == [0, "overtaken"]
+    assert min(dropped) == dropped[-1] == 0
+    assert rig.receiver.overflows == 1
+
+
+def test_one_that_is_just_being_taken_is_no_drop_for_another_thread() -> None:
+    rig = Rig(10)
+    rig.attach()
+    rig.arrive(2)
+    kept, dropped, threads = rig.receiver.mailbox, list[int](), list[threading.Thread]()
+
+    class Watched(deque[Any]):
+        def popleft(self) -> Any:
+            first = super().popleft()
+            threads.append(threading.Thread(target=lambda: dropped.append(kept.dropped)))
+            threads[-1].start()
+            threads[-1].join(0.05)
+            return first
+
+    kept.waiting = Watched(kept.waiting, 10)
+    rig.drain()
+    for each in threads:
+        each.join()
+    assert dropped == [0, 0]
 
 
 @pytest.mark.parametrize("count", [1, 100])

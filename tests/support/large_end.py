@@ -4,7 +4,8 @@
 
 Each message holds its number, and else one byte that depends on it. A receiver compares that with the number in the
 attachment, which never comes through shared memory. Both print `ready`, then obey their standard input, line by line:
-a number has a publisher send so many (0: until the next line), `report` prints a receiver's counts as JSON.
+a number has each publisher of the process send so many (0: until the next line), `report` prints a receiver's counts
+as JSON, those of the numbers from the first to the last of each publisher.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import json
 import sys
 import threading
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,9 +50,15 @@ class Counts:
     """Deliveries of a receiver: how much, and of it what was not the message that its attachment names."""
 
     def __init__(self, size: int, busy: float) -> None:
-        self.received, self.wrong, self.late = 0, 0, 0
-        self.first, self.last, self.told, self.limited = 0, 0, 0, 0
+        self.received, self.wrong, self.told, self.limited = 0, 0, 0, 0
         self._size, self._busy = size, busy
+        self._first: dict[Any, int] = {}
+        self._last: dict[Any, int] = {}
+
+    @property
+    def sent(self) -> int:
+        """Number of messages of all publishers, from the first of each that was received to its last."""
+        return sum(last - self._first[sender] + 1 for sender, last in [*self._last.items()])
 
     def hear(self, payload: bytes, info: MessageInfo) -> None:
         """Check a serialized message, and be busy for a while."""
@@ -59,8 +67,9 @@ class Counts:
         self.received += 1
         right = int.from_bytes(body[:NUMBER], "little") == number and filling == filling[:1] * len(filling)
         self.wrong += not (right and filling[0] == number % FILLINGS)
-        self.first = self.first or number
-        self.last = max(self.last, number)
+        sender = (info["publisher_gid"] or {}).get("data")
+        self._first.setdefault(sender, number)
+        self._last[sender] = max(self._last.get(sender, 0), number)
         time.sleep(self._busy)
 
     def read(self, record: Record) -> None:
@@ -77,40 +86,50 @@ def memory(field: str) -> int:
     return next((int(each.split()[1]) for each in lines if each.startswith(f"{field}:")), 0)
 
 
-def publish(publisher: Publisher[Any], size: int) -> None:
-    """Send what the standard input asks for, and say how many there were."""
-    count, go_on, asked = 0, threading.Event(), threading.Event()
-    wanted = [0]
+class Senders:
+    """Publishers of a process, each of which sends on a thread of its own."""
 
-    def obey() -> None:
+    def __init__(self, publishers: Sequence[Publisher[Any]], size: int) -> None:
+        self._publishers, self._size = publishers, size
+        self._counts = [0] * len(publishers)
+        self._is_stopped = threading.Event()
+
+    def obey(self) -> None:
+        """Send what the standard input asks for, and say each time how many there were so far."""
+        job: threading.Thread | None = None
         for line in sys.stdin:
-            go_on.set()
-            wanted[0] = int(line)
-            asked.set()
-        wanted[0] = -1
-        go_on.set()
-        asked.set()
+            self._end(job)
+            job = threading.Thread(target=self._send_all, args=(int(line),))
+            job.start()
+        self._end(job)
 
-    threading.Thread(target=obey, daemon=True).start()
-    while True:
-        asked.wait()
-        asked.clear()
-        go_on.clear()
-        left = wanted[0]
-        if left < 0:
-            return
-        endless = left == 0
-        while (endless and not go_on.is_set()) or left:
-            count += 1
-            publisher.publish(UInt8MultiArray(data=content(count, size)))
-            left -= not endless and 1
-            if not endless:
+    def _end(self, job: threading.Thread | None) -> None:
+        if job is not None:
+            self._is_stopped.set()
+            job.join()
+            self._is_stopped.clear()
+
+    def _send_all(self, count: int) -> None:
+        threads = [threading.Thread(target=self._send, args=(each, count)) for each in range(len(self._counts))]
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join()
+        print(sum(self._counts), flush=True)  # noqa: T201
+
+    def _send(self, place: int, left: int) -> None:
+        is_endless = not left
+        while left or (is_endless and not self._is_stopped.is_set()):
+            self._counts[place] += 1
+            data = content(self._counts[place], self._size)
+            self._publishers[place].publish(UInt8MultiArray(data=data))
+            if not is_endless:
+                left -= 1
                 time.sleep(0.02)
-        print(count, flush=True)  # noqa: T201
 
 
-def receive(node: robolink.Node, kind: str, size: int, busy: float) -> None:
-    """Receive until the standard input asks for the report."""
+def receive(node: robolink.Node, kind: str, size: int, busy: float, *, is_idle: bool) -> None:
+    """Receive, unless it is idle, and report what came whenever the standard input asks."""
     counts = Counts(size, busy)
 
     def lost(info: Any) -> None:
@@ -122,11 +141,13 @@ def receive(node: robolink.Node, kind: str, size: int, busy: float) -> None:
         UInt8MultiArray, TOPIC, counts.hear, PROFILES[kind], raw=True, event_callbacks=events
     )
     executor = SingleThreadedExecutor()
-    executor.add_node(node)
+    if not is_idle:
+        executor.add_node(node)
     threading.Thread(target=executor.spin, daemon=True).start()
     print("ready", flush=True)  # noqa: T201
     for _ in sys.stdin:
         shown = {name: value for name, value in vars(counts).items() if not name.startswith("_")}
+        shown["sent"] = counts.sent
         limits = {"locked": memory("VmLck"), "resident": memory("VmRSS")}
         kept = {"lost": subscription.lost, "dropped": subscription.dropped}
         print(json.dumps(shown | limits | kept), flush=True)  # noqa: T201
@@ -140,6 +161,8 @@ def main() -> None:
     parser.add_argument("--kind", choices=PROFILES, default="depth")
     parser.add_argument("--bytes", type=int, default=1_000_000)
     parser.add_argument("--busy", type=float, default=0.0)
+    parser.add_argument("--idle", action="store_true")
+    parser.add_argument("--publishers", type=int, default=1)
     parser.add_argument("--receivers", type=int, default=1)
     parser.add_argument("--unchecked", action="store_true")
     parser.add_argument("--pools", type=int, default=shared_memory.MOST_POOLS)
@@ -150,13 +173,14 @@ def main() -> None:
     robolink.init(args=[])
     node = robolink.Node(f"{asked.role}r")
     if asked.role == "receive":
-        receive(node, asked.kind, asked.bytes, asked.busy)
+        receive(node, asked.kind, asked.bytes, asked.busy, is_idle=asked.idle)
     else:
-        publisher = node.create_publisher(UInt8MultiArray, TOPIC, PROFILES[asked.kind])
-        while publisher.get_subscription_count() < asked.receivers:
+        profile = PROFILES[asked.kind]
+        publishers = [node.create_publisher(UInt8MultiArray, TOPIC, profile) for _ in range(asked.publishers)]
+        while publishers[0].get_subscription_count() < asked.receivers:
             time.sleep(0.005)
         print("ready", flush=True)  # noqa: T201
-        publish(publisher, asked.bytes)
+        Senders(publishers, asked.bytes).obey()
     robolink.shutdown()
 
 

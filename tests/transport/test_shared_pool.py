@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import sys
+import threading
 from array import array
 from typing import Any
 
@@ -28,6 +29,7 @@ class Provider:
 
     def __init__(self, places: int = 1) -> None:
         self.free, self.read, self.calls = places, 0, list[str]()
+        self.kind = bytearray
 
     def garbage_collect(self) -> int:
         self.calls.append("collect")
@@ -39,7 +41,7 @@ class Provider:
         if not self.free:
             raise zenoh.ZError("out of memory")
         self.free -= 1
-        return bytearray(size)
+        return self.kind(size)
 
 
 class Room:
@@ -96,6 +98,38 @@ def test_a_pool_whose_places_are_all_in_use_has_no_room_until_one_is_given_back(
     assert room.filled() is None
     room.provider.read = 1
     assert room.filled() == LARGE
+
+
+def test_no_place_is_given_away_while_another_one_is_filled_since_that_one_may_be_taken_back() -> None:
+    room, others = Room(provider=Provider(2)), list[threading.Thread]()
+
+    class Place(bytearray):
+        def __setitem__(self, at: Any, part: Any) -> None:
+            room.provider.kind = bytearray
+            others.append(threading.Thread(target=room.filled))
+            others[-1].start()
+            others[-1].join(0.05)
+            assert room.provider.calls == ["collect", "alloc"]
+            super().__setitem__(at, part)
+
+    room.provider.kind = Place
+    assert room.filled() == LARGE
+    others[0].join()
+    assert room.provider.calls == ["collect", "alloc"] * 2
+
+
+def test_a_signal_handler_that_publishes_while_a_place_is_filled_fills_another_one() -> None:
+    room, found = Room(provider=Provider(2)), list[Any]()
+
+    class Place(bytearray):
+        def __setitem__(self, at: Any, part: Any) -> None:
+            room.provider.kind = bytearray
+            found.append(room.filled(LARGE[1:]))
+            super().__setitem__(at, part)
+
+    room.provider.kind = Place
+    assert room.filled() == LARGE
+    assert found == [LARGE[1:]]
 
 
 @pytest.mark.parametrize("room", [Room(LEAST_FREE + POOL - 1), Room(fails=True)], ids=["no space", "no pool"])

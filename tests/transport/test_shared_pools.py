@@ -52,7 +52,7 @@ def test_a_session_that_holds_enough_takes_no_more_and_says_so_once(log_lines: l
         held.limit.look()
     assert held.removed == ["own"]
     (line,) = (each.message for each in log_lines)
-    assert "shared memory of 8 processes is held" in line
+    assert "8 pools of shared memory are held" in line
 
 
 def test_the_files_of_peers_that_started_at_once_are_left_alone(log_lines: list[Record]) -> None:

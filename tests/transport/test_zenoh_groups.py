@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import contextlib
+import threading
+from pathlib import PurePosixPath
 from typing import Any
 
 import pytest
 
-from robolink.networks.request import OVERRIDE
+from robolink import Context, Node
+from robolink.executors import SingleThreadedExecutor
+from robolink.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
+from robolink.interfaces.rcl_interfaces.msg import ParameterType, ParameterValue
+from robolink.interfaces.rcl_interfaces.srv import SetParameters
+from robolink.message import decoder, encoder
+from robolink.networks.request import FIRST_PORT, OVERRIDE
 from robolink.transport import Transport, zenoh_declare
 from robolink.transport.base import Sink
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_groups import Groups, group_of
+from tests.support.ros2_peer import Peer, Type
 from tests.support.transports import ADD, Caller, Desk, Network, served, until
 
 
@@ -149,6 +158,42 @@ def test_a_group_is_declared_only_where_no_setting_of_the_user_names_keys(
         for desk, key in zip(desks, (GET, SET), strict=True):
             find_at(session, desk, key)
         assert len(declared) == number
+
+
+# Beside ROS 2
+
+
+def of_node(name: str) -> SetParameters.Request:
+    """Return the request that gives a node's parameter `name` its full name."""
+    value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
+    return SetParameters.Request(parameters=[ParameterMsg(name="name", value=value)])
+
+
+def test_a_client_of_ros_2_finds_each_service_of_nodes_of_similar_names_and_reaches_that_one_alone(domain: int) -> None:
+    names = ["/robot", "/robot2", "/ns/robot", "/robot/robot", "/robot/set_parameters"]
+    with contextlib.ExitStack() as stack:
+        context = Context()
+        context.init([], domain_id=domain)
+        stack.enter_context(context)
+        nodes = [Node(each.name, namespace=str(each.parent), context=context) for each in map(PurePosixPath, names)]
+        executor = stack.enter_context(SingleThreadedExecutor(context=context))
+        for node in nodes:
+            node.declare_parameter("name", "")
+            executor.add_node(node)
+        spinning = threading.Thread(target=executor.spin)
+        stack.callback(spinning.join)
+        stack.callback(executor.shutdown)
+        spinning.start()
+        peer = stack.enter_context(contextlib.closing(Peer(FIRST_PORT + domain, domain)))
+        asking = peer.node("asking")
+        until(lambda: sum("/SS/" in each and "rcl_interfaces" in each for each in peer.tokens()) == 6 * len(names))
+        types = {each.split("/")[-3]: Type(*each.split("/")[-3:-1]) for each in peer.tokens() if "/SS/" in each}
+        type_ = types["rcl_interfaces::srv::dds_::SetParameters_"]
+        encode = encoder(SetParameters.Request)
+        for name in names:
+            (reply,) = asking.client(f"{name}/set_parameters", type_).call(encode(of_node(name)))
+            assert decoder(SetParameters.Response)(reply.payload).results[0].successful
+        assert [each.get_parameter("name").value for each in nodes] == names
 
 
 def find_at(caller: Transport, desk: Desk, key: str) -> None:
