@@ -49,6 +49,7 @@ ANNEXES = {
         "robolink/navigation",
         "tests/counterparts/test_nav2_*",
         "tests/navigation",
+        "tests/support/navigation_worlds.py",
         "tests/support/scanned_rooms.py",
     ],
     "race": ["robolink/race", "robolink/cli/race", "tests/race", "tests/cli/race"],
