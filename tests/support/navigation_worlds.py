@@ -115,7 +115,7 @@ class NavigationWorld(NamedTuple):
         middle = (np.arange(side) + 0.5) * RESOLUTION - MARGIN
         x, y = np.meshgrid(middle, middle)
         cells = np.where((abs(x - SIZE / 2) < SIZE / 2) & (abs(y - SIZE / 2) < SIZE / 2), 0, -1)
-        cells[self.layout.clearance(x, y, mapped_only=True) <= RESOLUTION / 2] = 100
+        cells[self.layout.clearance(x, y, mapped_only=True) < 0.6 * RESOLUTION] = 100  # lines between two cells too
         return cells.astype(np.int8)
 
     def text(self) -> str:
