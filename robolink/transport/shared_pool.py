@@ -5,11 +5,9 @@ collects what is free only when the pool is full, so that each message goes thro
 that is collected before each message uses the same few places again and again.
 
 As with Zenoh's own, a place whose reader stands still for 0.1 s may be used again when there is no other; a reader
-checks that after it has copied a message out (`zenoh.py:ZenohTransport.read`). When every place is in use, a message
-goes Zenoh's way.
-
-That holds for a place that is just being filled, too: if the whole process stands still meanwhile, another thread could
-be given it before the first goes on. So one thread fills at a time.
+checks that after it has copied a message out (`zenoh.py:ZenohTransport.read`). A place that is just being filled is
+like those: where the process stands still meanwhile, another thread could be given it before the first one goes on. So
+one thread fills at a time. When every place is in use, a message goes Zenoh's way.
 """
 
 from __future__ import annotations

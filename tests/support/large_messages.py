@@ -1,6 +1,6 @@
 """Large messages between processes whose memory is short, that stand still or are started again: nothing may be wrong.
 
-    python -m tests.support.large_messages [--freezes 10] [--restarts 60] [SCENE ...]
+    python -m tests.support.large_messages [--freezes 10] [--restarts 60] [--floods 5] [SCENE ...]
 
 plays the scenes and says what was sent, received, lost and wrong, and how much memory the receiver has. It ends with 1
 if anything was wrong, or missing without having been counted.
@@ -128,6 +128,89 @@ def freeze(
             if until_wrong and found.wrong:
                 break
         return found
+
+
+class Flood:
+    """A flood to receivers, which goes on for as long as the object is in use, whoever of its ends goes or comes.
+
+    Args:
+        stack: Ends the processes.
+        kind: Kind of the ends, of `large_end.PROFILES`.
+        size: Size of a message, in bytes.
+        publishers: Number of publishers of each process that sends: each has a thread of its own.
+        receivers: Number of receivers that are there from the beginning.
+    """
+
+    def __init__(
+        self, stack: ExitStack, *, kind: str = "depth", size: int = 1_000_000, publishers: int = 1, receivers: int = 2
+    ) -> None:
+        self._ends, self._options = Ends(stack, {}), ("--kind", kind, "--bytes", str(size))
+        self._publishers = publishers
+        self.receivers = [self._ends.start("receive", *self._options) for _ in range(receivers)]
+        assert [line(each) for each in self.receivers] == ["ready"] * receivers
+        self.begin(receivers)
+
+    def begin(self, receivers: int = 1) -> None:
+        """Start the process that sends; it begins when it knows of so many receivers."""
+        counts = ("--receivers", str(receivers), "--publishers", str(self._publishers))
+        self.sender = self._ends.start("publish", *self._options, *counts)
+        assert line(self.sender) == "ready"
+        tell(self.sender, "0")
+
+    def join(self, *options: str, is_counted: bool = True) -> None:
+        """Start another receiver."""
+        receiver = self._ends.start("receive", *self._options, *options)
+        assert line(receiver) == "ready"
+        if is_counted:
+            self.receivers.append(receiver)
+
+    def freeze(self, *ends: subprocess.Popen[str], seconds: float = 0.35) -> None:
+        """Let some of the processes stand still, long enough for Zenoh to use their memory again."""
+        if sys.platform == "win32":
+            raise RuntimeError("Windows has no SIGSTOP: nothing can be stopped")
+        for each in ends:
+            each.send_signal(signal.SIGSTOP)
+        time.sleep(seconds)
+        for each in ends:
+            each.send_signal(signal.SIGCONT)
+
+    def end(self) -> list[Counted]:
+        """End the flood; return what each of the receivers has counted."""
+        tell(self.sender, "1")
+        assert [line(self.sender) for _ in "01"]  # the flood's end, and this one's
+        count(self.receivers[0])
+        tell(self.sender, "1")  # what is missing before the last shows when another one comes
+        assert line(self.sender)
+        return [count(each) for each in self.receivers]
+
+
+def flood(*, times: int = 1, seconds: float = 1.0, **options: Any) -> list[Counted]:
+    """Play some floods that nothing disturbs; returns what the receivers of all of them have counted."""
+    found: list[Counted] = []
+    for _ in range(times):
+        with ExitStack() as stack:
+            played = Flood(stack, **options)
+            time.sleep(seconds)
+            found += played.end()
+    return found
+
+
+def disturb(*, times: int = 1, seconds: float = 0.3, **options: Any) -> list[Counted]:
+    """Play a flood whose ends stand still, are killed and come late, one after the other, while one never reads."""
+    with ExitStack() as stack:
+        played = Flood(stack, receivers=3, publishers=3, **options)
+        played.join("--idle", is_counted=False)
+        for _ in range(times):
+            time.sleep(seconds)
+            played.freeze(played.sender, played.receivers[0])
+            time.sleep(seconds)
+            for killed in (played.receivers.pop(), played.sender):
+                killed.kill()
+                killed.wait()
+            played.begin()
+            played.join()
+            time.sleep(seconds)
+        return played.end()
 
 
 def pass_on(
@@ -295,7 +378,7 @@ print(json.dumps(found))
     return [Counted(*each) for each in json.loads(done.stdout)]
 
 
-def scenes(freezes: int, restarts: int) -> dict[str, Callable[[], list[Counted]]]:
+def scenes(freezes: int, restarts: int, floods: int) -> dict[str, Callable[[], list[Counted]]]:
     """Return all scenes by name."""
     low: tuple[str, ...] = tuple(tight())
     found: dict[str, Callable[[], list[Counted]]] = {
@@ -316,6 +399,12 @@ def scenes(freezes: int, restarts: int) -> dict[str, Callable[[], list[Counted]]
         "router-memlock": partial(route, shares=True, prefix=low),
         "router-alone": partial(route, shares=False, receivers=[(), ()]),
         "space": little_space,
+        "flood": partial(flood, times=floods, seconds=2.0),
+        "flood-images": partial(flood, times=floods, seconds=2.0, size=6_200_000),
+        "flood-several": partial(flood, times=floods, publishers=3, receivers=3),
+        "disturbed": partial(disturb, times=floods),
+        "disturbed-all": partial(disturb, times=1, kind="all"),
+        "disturbed-images": partial(disturb, times=floods, size=6_200_000),
         "restarts": partial(restart, times=restarts, environ={}),
         "restarts-images": partial(restart, times=restarts // 2, size=6_200_000, environ={}),
         "restarts-without": partial(restart, times=restarts, environ={VARIABLE: "off"}),
@@ -332,10 +421,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--freezes", type=int, default=10)
     parser.add_argument("--restarts", type=int, default=60)
+    parser.add_argument("--floods", type=int, default=5)
     parser.add_argument("scenes", nargs="*")
     asked = parser.parse_args()
     print(f"shared memory: {no_room() or 'there is room'}")  # noqa: T201
-    known, bad = scenes(asked.freezes, asked.restarts), 0
+    known, bad = scenes(asked.freezes, asked.restarts, asked.floods), 0
     for name in asked.scenes or known:
         for each in known[name]():
             bad += not each.fine

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 import pytest
 
 from tests.support import large_messages
-from tests.support.large_messages import Restarts, freeze, pass_on, tight
+from tests.support.large_messages import Restarts, disturb, flood, freeze, pass_on, tight
 
 pytestmark = [
     pytest.mark.processes,
@@ -30,6 +30,21 @@ def test_without_the_check_a_receiver_that_stood_still_gets_other_messages_data(
 def test_a_receiver_that_stood_still_gets_no_other_messages_data(kind: str) -> None:
     found = freeze(kind=kind, freezes=1, busy=0.02)
     assert found.fine, found
+
+
+@needs_room
+@pytest.mark.parametrize("size", [1_000_000, 6_200_000])
+def test_in_a_flood_everything_is_right_or_counted(size: int) -> None:
+    for found in flood(size=size, publishers=2, seconds=0.5):
+        assert found.fine, found
+
+
+@needs_room
+def test_ends_of_a_flood_that_stand_still_are_killed_or_come_late_harm_no_message() -> None:
+    kept = disturb()
+    assert len(kept) == 3
+    for found in kept:
+        assert found.fine, found
 
 
 @needs_room
