@@ -1,0 +1,288 @@
+"""Controller by rollouts (MPPI): many ways to drive on are tried by arithmetic, and the good ones are averaged.
+
+The method is model predictive path integral control (Williams et al. 2017, "Information theoretic MPC for model-based
+reinforcement learning"), with the parameters of Nav2's controller of that name.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.geometry.plane import Pose
+from robolink.navigation.critics import USUAL, Batch, Critic, F, Singles, Surroundings, costs_at
+from robolink.navigation.footprint import INSCRIBED, UNKNOWN
+from robolink.navigation.grid import Floats
+from robolink.navigation.local_path import LocalPath
+
+_SMOOTHING = tuple(F(each / 231) for each in (-21, 14, 39, 54, 59, 54, 39, 14, -21))
+"""Weights of nine neighbours: a parabola is fitted to them (Savitzky and Golay 1964)."""
+_MARGIN = len(_SMOOTHING) // 2
+_HOLD = 0.4
+"""Seconds from one draw of the noise to the next."""
+_WEIGHTY = F(1e-4)
+"""Share of the best rollout's weight below which one is left out of the mean."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """Parameters under Nav2's names: speeds in m/s and rad/s, accelerations in m/s² and rad/s², `model_dt` in seconds.
+
+    `batch_size` rollouts of `time_steps` steps are drawn with the standard deviations `vx_std` and `wz_std` about the
+    sequence found last. A low `temperature` trusts the best ones, `gamma` weighs how far one is from that sequence.
+    With `regenerate_noises` new ones are drawn in each step. `min_turning_r` in metres is for robots that steer.
+    """
+
+    batch_size: int = 1000
+    time_steps: int = 56
+    model_dt: float = 0.05
+    iteration_count: int = 1
+    temperature: float = 0.3
+    gamma: float = 0.015
+    vx_max: float = 0.5
+    vx_min: float = -0.35
+    wz_max: float = 1.9
+    ax_max: float = 3.0
+    ax_min: float = -3.0
+    az_max: float = 3.5
+    vx_std: float = 0.2
+    wz_std: float = 0.4
+    regenerate_noises: bool = False
+    min_turning_r: float = 0.0
+
+    def limited(self, limit: float, *, percentage: bool) -> Options:
+        """Return them with lower speeds.
+
+        Args:
+            limit: Greatest speed ahead in m/s; 0.0 leaves all as it is.
+            percentage: True takes `limit` as percent of `vx_max`.
+        """
+        if limit <= 0.0:
+            return self
+        share = min(1.0, limit / 100.0 if percentage else limit / self.vx_max)
+        return replace(self, vx_max=self.vx_max * share, vx_min=self.vx_min * share, wz_max=self.wz_max * share)
+
+
+class Command(NamedTuple):
+    """Speeds to drive with: `v` in m/s ahead, `w` in rad/s to the left.
+
+    `is_valid` is False if every way is obstructed; the speeds are 0 then.
+    """
+
+    v: float
+    w: float
+    is_valid: bool
+    trajectory: Floats
+    """Poses to which this leads, of shape (steps, 3)."""
+
+
+class Rollouts:
+    """Controller that remembers the sequence it found last.
+
+    Args:
+        options: Its parameters.
+        critics: What judges the rollouts.
+        random: Source of the noise: the same one gives the same commands.
+        period: Seconds between two calls of `step`.
+    """
+
+    def __init__(
+        self,
+        options: Options,
+        critics: tuple[Critic, ...] = USUAL,
+        *,
+        random: np.random.Generator,
+        period: float = 0.05,
+    ) -> None:
+        self.options, self.critics, self._random, self._period = options, critics, random, period
+        self._noise: npt.NDArray[np.float32] | None = None
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the sequence: the next step begins with the robot's present speed."""
+        self._sequence: Singles = np.zeros((self.options.time_steps, 2), F)
+        self._past: Singles = np.zeros((_MARGIN, 2), F)
+        self._is_fresh = True
+
+    def step(
+        self,
+        pose: Pose,
+        speed: tuple[float, float],
+        path: LocalPath,
+        goal: Pose,
+        around: Surroundings,
+    ) -> Command:
+        """Return the command of now.
+
+        Args:
+            pose: Pose of the robot, in the frame of everything here.
+            speed: Its speed in m/s and rad/s.
+            path: What lies ahead.
+            goal: Where the whole path ends.
+            around: The costmap about the robot, and what moves there.
+        """
+        if self._is_fresh:
+            self._sequence[:] = self._within(np.array([speed], F))
+            self._is_fresh = False
+        for _ in range(2):
+            for _ in range(max(1, self.options.iteration_count)):
+                is_valid = self._improve(pose, speed, path, goal, around)
+            if is_valid:
+                break
+            self._sequence[:] = 0.0  # from a standstill there may be a way
+        return self._command(pose, is_valid)
+
+    def _improve(
+        self,
+        pose: Pose,
+        speed: tuple[float, float],
+        path: LocalPath,
+        goal: Pose,
+        around: Surroundings,
+    ) -> bool:
+        """Replace the sequence by the mean of rollouts about it; False, and the old one, if all of them collide."""
+        options = self.options
+        v, w = self._drawn(speed)
+        x, y, theta = integrated(pose, v, w, options.model_dt)
+        is_clear = costs_at(around.costs, path.x.astype(F), path.y.astype(F))
+        furthest = _furthest(path, x[-1, ::8], y[-1, ::8])
+        clear = (is_clear < INSCRIBED) | (is_clear == UNKNOWN)
+        batch = Batch(x, y, theta, v, w, options.model_dt, pose, path, clear, furthest, goal, around)
+        total, collides = self._judged(batch)
+        if collides.all():
+            return False
+        total -= total.min()
+        weights = np.exp(total * F(-1 / options.temperature))
+        good = np.flatnonzero(weights >= _WEIGHTY)
+        weights = weights[good] / weights[good].sum(dtype=F)
+        mean = np.stack([(each[:, good] * weights).sum(axis=1, dtype=F) for each in (v, w)], axis=1)
+        self._sequence = self._feasible(self._smoothed(mean), speed)
+        return True
+
+    def _judged(self, batch: Batch) -> tuple[Singles, npt.NDArray[np.bool_]]:
+        total, options = np.zeros(batch.x.shape[1], F), self.options
+        collides = np.zeros(batch.x.shape[1], bool)
+        for critic in self.critics:
+            judgement = critic.judge(batch) if critic.enabled else None
+            if judgement is not None:
+                total += judgement.costs
+                collides = collides if judgement.collides is None else collides | judgement.collides
+        if options.gamma > 0.0:
+            for each, column, deviation in ((batch.v, 0, options.vx_std), (batch.w, 1, options.wz_std)):
+                mean = self._sequence[:, column, None]
+                if deviation > 0.0 and mean.any():
+                    total += ((each - mean) * mean).sum(axis=0, dtype=F) * F(options.gamma / deviation**2)
+        return total, collides
+
+    def _drawn(self, speed: tuple[float, float]) -> tuple[Singles, Singles]:
+        """Return the speeds of rollouts about the sequence, within all limits."""
+        options = self.options
+        shape = (options.time_steps, 2, options.batch_size)
+        if self._noise is None or options.regenerate_noises or self._noise.shape != shape:
+            self._noise = self._noises(shape)
+        drawn = self._noise + self._sequence[:, :, None]
+        np.clip(drawn[:, 0], F(options.vx_min), F(options.vx_max), out=drawn[:, 0])
+        np.clip(drawn[:, 1], F(-options.wz_max), F(options.wz_max), out=drawn[:, 1])
+        rise, fall = self._rates()
+        last = np.empty(shape[1:], F)
+        last[:] = np.array(speed, F)[:, None]
+        low, high = np.empty_like(last), np.empty_like(last)
+        for row in drawn:
+            np.subtract(last, fall, out=low)
+            np.add(last, rise, out=high)
+            np.maximum(row, low, out=row)
+            np.minimum(row, high, out=row)
+            last = row
+        if options.min_turning_r > 0.0:
+            most = np.abs(drawn[:, 0]) * F(1 / options.min_turning_r)
+            np.clip(drawn[:, 1], -most, most, out=drawn[:, 1])
+        return drawn[:, 0], drawn[:, 1]
+
+    def _noises(self, shape: tuple[int, int, int]) -> Singles:
+        """Return noise that is drawn each `_HOLD` seconds, and in between changes evenly from one to the next.
+
+        Noise that is new in each step, as Nav2's, cancels itself out: its rollouts stay close together, and it takes
+        several times as many to find the way round an obstacle.
+        """
+        steps, _, count = shape
+        options = self.options
+        hold = max(1, round(_HOLD / options.model_dt))
+        knots = self._random.standard_normal((-(-steps // hold) + 1, 2, count), F)
+        knots *= np.array((options.vx_std, options.wz_std), F)[:, None]
+        first, share = np.divmod(np.arange(steps), hold)
+        noise = knots[first]
+        noise += (knots[first + 1] - noise) * (share / hold).astype(F)[:, None, None]
+        noise[:, :, 0] = 0.0  # the sequence itself is one of them
+        return noise
+
+    def _rates(self) -> tuple[Singles, Singles]:
+        """Return by how much both speeds may rise and fall in a step."""
+        options = self.options
+        rise = np.array([[options.ax_max], [options.az_max]], F) * F(options.model_dt)
+        fall = np.array([[abs(options.ax_min)], [options.az_max]], F) * F(options.model_dt)
+        return rise, fall
+
+    def _within(self, sequence: Singles) -> Singles:
+        options = self.options
+        low = np.array((options.vx_min, -options.wz_max), F)
+        return np.clip(sequence, low, np.array((options.vx_max, options.wz_max), F))
+
+    def _smoothed(self, sequence: Singles) -> Singles:
+        """Return a sequence smoothed along time, together with the commands before it."""
+        whole = np.concatenate((self._past, sequence, np.repeat(sequence[-1:], _MARGIN, axis=0)))
+        smooth = np.zeros_like(sequence)
+        for shift, weight in enumerate(_SMOOTHING):
+            smooth += whole[shift : shift + len(sequence)] * weight
+        return smooth
+
+    def _feasible(self, sequence: Singles, speed: tuple[float, float]) -> Singles:
+        """Return a sequence within the limits of speed and acceleration, from the present speed on."""
+        sequence = self._within(sequence)
+        (rise,), (fall,) = (each.T for each in self._rates())
+        last = np.array(speed, F)
+        for row in sequence:
+            np.clip(row, last - fall, last + rise, out=row)
+            last = row
+        return sequence
+
+    def _command(self, pose: Pose, is_valid: bool) -> Command:
+        options = self.options
+        v, w = self._sequence[:, :1], self._sequence[:, 1:]
+        x, y, theta = integrated(pose, v, w, options.model_dt)
+        trajectory = np.concatenate((x, y, theta), axis=1).astype(np.float64)
+        if not is_valid:
+            self.reset()
+            return Command(0.0, 0.0, False, trajectory)
+        first = self._sequence[0].copy()
+        self._past = np.concatenate((self._past[1:], first[None]))
+        self._shift()
+        return Command(float(first[0]), float(first[1]), True, trajectory)
+
+    def _shift(self) -> None:
+        """Move the sequence on by the period of control, which may be less than a step of the model."""
+        share = F(min(1.0, self._period / self.options.model_dt))
+        following = np.concatenate((self._sequence[1:], self._sequence[-1:]))
+        self._sequence = self._sequence + (following - self._sequence) * share
+
+
+def integrated(pose: Pose, v: Singles, w: Singles, dt: float) -> tuple[Singles, Singles, Singles]:
+    """Return where speeds lead: x, y and theta after each step, of the shape of `v`, in which steps are rows."""
+    theta = np.cumsum(w * F(dt), axis=0, dtype=F)
+    theta += F(math.remainder(pose.theta, 2 * math.pi))
+    middle = theta - w * F(dt / 2)
+    way = v * F(dt)
+    x = np.cumsum(way * np.cos(middle), axis=0, dtype=F)
+    y = np.cumsum(way * np.sin(middle), axis=0, dtype=F)
+    x += F(pose.x)
+    y += F(pose.y)
+    return x, y, theta
+
+
+def _furthest(path: LocalPath, x: Singles, y: Singles) -> int:
+    """Return the index of the furthest point of a path that is the nearest one to the end of a rollout."""
+    dx, dy = x[:, None] - path.x.astype(F), y[:, None] - path.y.astype(F)
+    return int((dx * dx + dy * dy).argmin(axis=1).max())
