@@ -1,4 +1,4 @@
-"""Critics of rollouts: what is bad about each of many ways to drive on, as costs whose sum decides.
+"""Critics of rollouts: each finds one fault with many ways to drive on, as costs whose sum decides.
 
 They are those of Nav2's MPPI controller, and so are their fields, the parameters of each, with their defaults.
 """
@@ -23,10 +23,12 @@ Singles = npt.NDArray[np.float32]
 
 F = np.float32
 TURN = F(2 * math.pi)
+_NEARER = 0.01
+"""Metres by which a robot that is too near to an obstacle may get nearer yet, on its way out."""
 
 
 class Surroundings(NamedTuple):
-    """What is around the robot: a costmap, and what moves."""
+    """Surroundings of the robot: a costmap, and the obstacles that move."""
 
     costs: Grid
     outline: Floats = np.empty((0, 2))
@@ -62,7 +64,7 @@ class Batch(NamedTuple):
 
 
 class Judgement(NamedTuple):
-    """What a critic says of a batch: a cost for each rollout, and which of them collide."""
+    """Judgement of a critic about a batch: a cost for each rollout, and which of them collide."""
 
     costs: Singles
     collides: npt.NDArray[np.bool_] | None = None
@@ -101,10 +103,10 @@ class CostCritic(Critic):
         """Return the costs; a rollout that starts where nothing may stand collides only if it gets deeper in."""
         step = max(1, self.trajectory_point_step)
         found = costs_at(batch.around.costs, batch.x[::step], batch.y[::step])
-        hits = (found >= INSCRIBED) & (found != UNKNOWN)
+        hits = obstructed(batch.around.costs, batch.start, batch.x[::step], batch.y[::step], found)
         if self.consider_footprint and len(batch.around.outline):
             hits |= self._touches(batch, found, step)
-        collides = hits.any(axis=0)
+        collides = np.asarray(hits.any(axis=0))
         costs = found.astype(F)
         if batch.is_near_goal(self.near_goal_distance):
             costs[found < self.near_collision_cost] = 0.0
@@ -302,6 +304,33 @@ def costs_at(costs: Grid, x: Singles, y: Singles) -> npt.NDArray[np.uint8]:
     index += column.astype(np.int32)
     found: npt.NDArray[np.uint8] = framed.ravel().take(index)
     return found
+
+
+def obstructed(costs: Grid, start: Pose, x: Singles, y: Singles, found: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    """Return where the robot would be in an obstacle, or nearer to one than its radius allows.
+
+    A robot that starts too near to an obstacle, since that came to it, may go wherever it gets no nearer: otherwise it
+    would never get free.
+
+    Args:
+        costs: Costmap.
+        start: Where the robot is now.
+        x: Places in metres.
+        y: Places in metres.
+        found: Costs of these places, from `costs_at`.
+    """
+    limit = F(INSCRIBED)
+    at_start = int(costs_at(costs, np.array([start.x], F), np.array([start.y], F))[0])
+    row, column = np.nonzero(costs.cells == LETHAL)
+    nearer = np.zeros(found.shape, bool)
+    if at_start == INSCRIBED and len(row):
+        limit = F(LETHAL)
+        px, py = costs.cell_to_world(row, column)
+        off = np.hypot(px - start.x, py - start.y)
+        near = int(off.argmin())
+        dx, dy = x - F(px[near]), y - F(py[near])
+        nearer = np.asarray(dx * dx + dy * dy < F(max(off[near] - _NEARER, 0.0) ** 2))
+    return np.asarray(((found >= limit) & (found != UNKNOWN)) | nearer)
 
 
 USUAL: tuple[Critic, ...] = (

@@ -76,7 +76,7 @@ class _Track:
 
 
 class Movers:
-    """What moves around a robot, by its scans. Times in seconds, places in one fixed frame such as odom."""
+    """Moving obstacles around a robot, by its scans. Times in seconds, places in one fixed frame such as odom."""
 
     def __init__(self) -> None:
         self._tracks: list[_Track] = []
@@ -86,7 +86,7 @@ class Movers:
         """Take in a scan.
 
         Args:
-            ranges: Metres, one for each beam; what is not finite or not positive is no return.
+            ranges: Metres, one for each beam; a value that is not finite or not positive stands for none.
             angles: Angles of the beams in radians, rising.
             sensor: Pose of the scanner when it measured.
             time: When that was; if time has gone back, all is forgotten.
@@ -107,7 +107,7 @@ class Movers:
         self._tracks += [_Track((x, y), x, y, radius, time, at=time) for x, y, radius in things]
 
     def now(self, time: float) -> list[Mover]:
-        """Return what moves, where it should be at a time by now; nothing if the last scan is too old."""
+        """Return the moving obstacles, each where it should be by now; none if the last scan is too old."""
         if time - self._time > _LOST:
             return []
         moving = (each for each in self._tracks if each.moves)

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from robolink.geometry.plane import Pose
-from robolink.navigation.critics import USUAL, Batch, Critic, F, Singles, Surroundings, costs_at
+from robolink.navigation.critics import USUAL, Batch, Critic, F, Singles, Surroundings, costs_at, obstructed
 from robolink.navigation.footprint import INSCRIBED, UNKNOWN
 from robolink.navigation.grid import Floats
 from robolink.navigation.local_path import LocalPath
@@ -24,24 +24,28 @@ _SMOOTHING = tuple(F(each / 231) for each in (-21, 14, 39, 54, 59, 54, 39, 14, -
 _MARGIN = len(_SMOOTHING) // 2
 _HOLD = 0.4
 """Seconds from one draw of the noise to the next."""
+_BLOCKED = 3
+"""Points of the path ahead that may be obstructed before another way is looked for."""
 _WEIGHTY = F(1e-4)
 """Share of the best rollout's weight below which one is left out of the mean."""
 
 
 @dataclass(frozen=True)
 class Options:
-    """Parameters under Nav2's names: speeds in m/s and rad/s, accelerations in m/s² and rad/s², `model_dt` in seconds.
+    """Parameters under Nav2's names; the defaults of the first three and of `temperature` are not Nav2's, but measured.
+
+    Units: speeds in m/s and rad/s, accelerations in m/s² and rad/s², `model_dt` in seconds.
 
     `batch_size` rollouts of `time_steps` steps are drawn with the standard deviations `vx_std` and `wz_std` about the
     sequence found last. A low `temperature` trusts the best ones, `gamma` weighs how far one is from that sequence.
     With `regenerate_noises` new ones are drawn in each step. `min_turning_r` in metres is for robots that steer.
     """
 
-    batch_size: int = 1000
-    time_steps: int = 56
-    model_dt: float = 0.05
+    batch_size: int = 600
+    time_steps: int = 28
+    model_dt: float = 0.1
     iteration_count: int = 1
-    temperature: float = 0.3
+    temperature: float = 0.1
     gamma: float = 0.015
     vx_max: float = 0.5
     vx_min: float = -0.35
@@ -100,6 +104,7 @@ class Rollouts:
     ) -> None:
         self.options, self.critics, self._random, self._period = options, critics, random, period
         self._noise: npt.NDArray[np.float32] | None = None
+        self._fan = _fan(options)
         self.reset()
 
     def reset(self) -> None:
@@ -146,11 +151,11 @@ class Rollouts:
     ) -> bool:
         """Replace the sequence by the mean of rollouts about it; False, and the old one, if all of them collide."""
         options = self.options
-        v, w = self._drawn(speed)
+        found = costs_at(around.costs, path.x.astype(F), path.y.astype(F))
+        clear = (found < INSCRIBED) | (found == UNKNOWN)
+        furthest = min(len(path.x) - 1, round(options.vx_max * options.time_steps * options.model_dt / path.spacing))
+        v, w = self._drawn(speed, is_blocked=int((~clear).sum()) > _BLOCKED)
         x, y, theta = integrated(pose, v, w, options.model_dt)
-        is_clear = costs_at(around.costs, path.x.astype(F), path.y.astype(F))
-        furthest = _furthest(path, x[-1, ::8], y[-1, ::8])
-        clear = (is_clear < INSCRIBED) | (is_clear == UNKNOWN)
         batch = Batch(x, y, theta, v, w, options.model_dt, pose, path, clear, furthest, goal, around)
         total, collides = self._judged(batch)
         if collides.all():
@@ -161,7 +166,15 @@ class Rollouts:
         weights = weights[good] / weights[good].sum(dtype=F)
         mean = np.stack([(each[:, good] * weights).sum(axis=1, dtype=F) for each in (v, w)], axis=1)
         self._sequence = self._feasible(self._smoothed(mean), speed)
+        if self._collides(pose, around):  # two ways round an obstacle have a mean that leads into it
+            best = int(total.argmin())
+            self._sequence = np.stack([v[:, best], w[:, best]], axis=1)
         return True
+
+    def _collides(self, pose: Pose, around: Surroundings) -> bool:
+        """Return whether the sequence leads into an obstacle."""
+        x, y, _ = integrated(pose, self._sequence[:, :1], self._sequence[:, 1:], self.options.model_dt)
+        return bool(obstructed(around.costs, pose, x, y, costs_at(around.costs, x, y)).any())
 
     def _judged(self, batch: Batch) -> tuple[Singles, npt.NDArray[np.bool_]]:
         total, options = np.zeros(batch.x.shape[1], F), self.options
@@ -178,13 +191,15 @@ class Rollouts:
                     total += ((each - mean) * mean).sum(axis=0, dtype=F) * F(options.gamma / deviation**2)
         return total, collides
 
-    def _drawn(self, speed: tuple[float, float]) -> tuple[Singles, Singles]:
+    def _drawn(self, speed: tuple[float, float], *, is_blocked: bool = False) -> tuple[Singles, Singles]:
         """Return the speeds of rollouts about the sequence, within all limits."""
         options = self.options
         shape = (options.time_steps, 2, options.batch_size)
         if self._noise is None or options.regenerate_noises or self._noise.shape != shape:
             self._noise = self._noises(shape)
         drawn = self._noise + self._sequence[:, :, None]
+        if is_blocked:
+            self._add_fan(drawn)
         np.clip(drawn[:, 0], F(options.vx_min), F(options.vx_max), out=drawn[:, 0])
         np.clip(drawn[:, 1], F(-options.wz_max), F(options.wz_max), out=drawn[:, 1])
         rise, fall = self._rates()
@@ -201,6 +216,16 @@ class Rollouts:
             most = np.abs(drawn[:, 0]) * F(1 / options.min_turning_r)
             np.clip(drawn[:, 1], -most, most, out=drawn[:, 1])
         return drawn[:, 0], drawn[:, 1]
+
+    def _add_fan(self, drawn: Singles) -> None:
+        """Put plain ways in place of some rollouts: arcs, turns to and fro, a turn on the spot, backwards, a stop.
+
+        Noise about the sequence alone would never find the way round an obstacle that stands right ahead.
+        """
+        half = len(drawn) * 2 // 5
+        fan = self._fan[: drawn.shape[2] // 3]
+        drawn[:half, :, 1 : len(fan) + 1] = fan[:, :2].T
+        drawn[half:, :, 1 : len(fan) + 1] = fan[:, [0, 2]].T
 
     def _noises(self, shape: tuple[int, int, int]) -> Singles:
         """Return noise that is drawn each `_HOLD` seconds, and in between changes evenly from one to the next.
@@ -269,6 +294,16 @@ class Rollouts:
         self._sequence = self._sequence + (following - self._sequence) * share
 
 
+def _fan(options: Options) -> Singles:
+    """Return plain ways to drive, each a speed ahead, a turning speed at first and one later."""
+    turns = np.linspace(-1.0, 1.0, 7) * min(options.wz_max, 1.4)
+    ways = [(0.0, 0.0, 0.0), (options.vx_min / 2, 0.0, 0.0)]
+    ways += [(0.0, turn, turn) for turn in turns if turn]
+    for share in (1.0, 0.5):
+        ways += [(options.vx_max * share, first, then) for first in turns * share for then in turns * share]
+    return np.array(ways, F)
+
+
 def integrated(pose: Pose, v: Singles, w: Singles, dt: float) -> tuple[Singles, Singles, Singles]:
     """Return where speeds lead: x, y and theta after each step, of the shape of `v`, in which steps are rows."""
     theta = np.cumsum(w * F(dt), axis=0, dtype=F)
@@ -280,9 +315,3 @@ def integrated(pose: Pose, v: Singles, w: Singles, dt: float) -> tuple[Singles, 
     x += F(pose.x)
     y += F(pose.y)
     return x, y, theta
-
-
-def _furthest(path: LocalPath, x: Singles, y: Singles) -> int:
-    """Return the index of the furthest point of a path that is the nearest one to the end of a rollout."""
-    dx, dy = x[:, None] - path.x.astype(F), y[:, None] - path.y.astype(F)
-    return int((dx * dx + dy * dy).argmin(axis=1).max())

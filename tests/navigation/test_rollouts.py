@@ -19,12 +19,12 @@ from robolink.navigation.critics import (
     costs_at,
     turned,
 )
-from robolink.navigation.footprint import INSCRIBED, LETHAL, UNKNOWN, cover, parse_footprint
+from robolink.navigation.footprint import INSCRIBED, LETHAL, UNKNOWN, cover, highest_costs, parse_footprint
 from robolink.navigation.grid import Floats, Grid, distances
 from robolink.navigation.local_path import LocalPath, ahead, lengths, nearest
 from robolink.navigation.rollouts import Command, Options, Rollouts
 
-SMALL = Options(batch_size=300, time_steps=28, model_dt=0.1)
+SMALL = Options(batch_size=300)
 RADIUS = 0.17
 
 
@@ -94,11 +94,18 @@ def test_an_obstacle_on_the_path_is_gone_round() -> None:
 
 def test_no_way_at_all_is_not_valid_and_stops() -> None:
     costs = costmap()
-    costs.cells[:] = INSCRIBED
+    costs.cells[:] = LETHAL
     command = step(controller(), costs, (0.3, 0.0))
     assert command[:3] == (0.0, 0.0, False)
     costs.cells[:] = 0
     assert step(controller(), costs).is_valid
+
+
+def test_a_robot_that_is_too_near_to_an_obstacle_gets_away() -> None:
+    costs = costmap((0.0, 0.3, 0.15))
+    places = driven(controller(), straight(), costs, Pose(0.0, 0.0, 1.0))
+    assert math.hypot(places[-1].x - 4.0, places[-1].y) < 0.2
+    assert min(math.hypot(each.x, each.y - 0.3) for each in places) > 0.28
 
 
 def test_the_same_seed_gives_the_same_commands() -> None:
@@ -120,7 +127,7 @@ def test_noise_is_drawn_once_or_in_each_step() -> None:
 
 @pytest.mark.parametrize("speed", [(0.0, 0.0), (0.5, 1.0), (-0.3, -1.9), (2.0, 9.0)])
 def test_commands_keep_to_the_limits(speed: tuple[float, float]) -> None:
-    control = controller(Options(batch_size=300, time_steps=28, model_dt=0.1, ax_max=1.0, ax_min=-2.0, az_max=2.0))
+    control = controller(Options(batch_size=300, ax_max=1.0, ax_min=-2.0, az_max=2.0))
     command = step(control, costmap(), speed)
     v, w = speed
     assert v - 0.2 - 1e-6 <= command.v <= v + 0.1 + 1e-6
@@ -132,13 +139,13 @@ def test_a_speed_limit_holds_in_both_forms() -> None:
     assert Options().limited(50.0, percentage=True).vx_min == pytest.approx(-0.175)
     assert Options().limited(0.0, percentage=True) == Options()
     assert Options().limited(300.0, percentage=True) == Options()
-    control = controller(Options(batch_size=300, time_steps=28, model_dt=0.1).limited(0.1, percentage=False))
+    control = controller(Options(batch_size=300).limited(0.1, percentage=False))
     places = driven(control, straight(), costmap(), Pose(0.0, 0.0, 0.0), 5.0)
     assert max(a.x - b.x for a, b in zip(places[1:], places, strict=False)) < 0.1 * 0.05 + 1e-6
 
 
 def test_a_robot_that_steers_is_not_turned_on_the_spot() -> None:
-    control = controller(Options(batch_size=300, time_steps=28, model_dt=0.1, min_turning_r=0.5))
+    control = controller(Options(batch_size=300, min_turning_r=0.5))
     drawn_v, drawn_w = control._drawn((0.0, 0.0))
     assert (np.abs(drawn_w) <= np.abs(drawn_v) / 0.5 + 1e-6).all()
 
@@ -152,11 +159,12 @@ def test_a_long_footprint_does_not_turn_into_a_wall() -> None:
     up = np.column_stack((np.zeros(41), np.linspace(0, 2, 41), np.full(41, math.pi / 2)))
     v, w = 0.0, 0.0
     for _ in range(20):
-        command = control.step(pose, (v, w), part(up), goal, Surroundings(costs, outline, 1))
+        command = control.step(pose, (v, w), part(up), goal, Surroundings(costs, outline, 1.0))
         v, w = command.v, command.w
         pose = Pose(pose.x + v * 0.05 * math.cos(pose.theta), pose.y + v * 0.05 * math.sin(pose.theta), pose.theta)
         pose = pose._replace(theta=pose.theta + w * 0.05)
-    assert abs(pose.theta) < 0.6
+        assert highest_costs(costs, outline, np.array([pose]))[0] < LETHAL
+    assert pose.theta > 0.1
 
 
 def test_turning_and_backing_up_cost() -> None:
