@@ -50,6 +50,7 @@ ANNEXES = {
         "tests/counterparts/test_nav2_*",
         "tests/navigation",
         "tests/support/navigation_worlds.py",
+        "tests/support/mapping_drives.py",
         "tests/support/scanned_rooms.py",
     ],
     "race": ["robolink/race", "robolink/cli/race", "tests/race", "tests/cli/race"],

@@ -38,6 +38,27 @@ class Beams(NamedTuple):
         return self.ends[: self.hits]
 
 
+def beams_of(
+    ranges: npt.ArrayLike, angles: npt.ArrayLike, limits: tuple[float, float], used: float, lidar: Pose
+) -> Beams:
+    """Return the beams of a scan; those that came back from nowhere, from too near or as NaN are left out.
+
+    Args:
+        ranges: Distances in metres.
+        angles: Directions of the beams in the frame of the lidar, in radians, as many.
+        limits: Least and largest distance that the lidar measures; at these and beyond nothing was measured.
+        used: Distance in metres from which on a beam only says that the way up to there is free.
+        lidar: Pose of the lidar on the robot.
+    """
+    far, turns = np.asarray(ranges, np.float64), np.asarray(angles, np.float64)
+    measured = (far > limits[0]) & (far < limits[1])  # NaN is neither
+    far, turns = far[measured], turns[measured] + lidar.theta
+    order = np.argsort(far >= used, kind="stable")
+    far, turns = np.minimum(far, used)[order], turns[order]
+    ends = np.column_stack((lidar.x + far * np.cos(turns), lidar.y + far * np.sin(turns)))
+    return Beams(ends, int((far < used).sum()), (lidar.x, lidar.y))
+
+
 class Occupancy:
     """Counts of beams in cells, which grow with what is seen.
 
