@@ -10,12 +10,13 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any
 
 from robolink.callback_groups import CallbackGroup, ReentrantCallbackGroup
+from robolink.running.delivered import Delivered
 from robolink.running.destroyable import Destroyable
 from robolink.running.inbox import Inbox
 from robolink.running.keep_last import KeepLast
 from robolink.running.ready_queue import HELD, OTHER, TASK, WAITABLE, Place, ReadyQueue, reserve
 from robolink.running.ready_queue import NOTHING as NOTHING
-from robolink.transport.history import ALL, Mailbox
+from robolink.transport.history import ALL
 
 if TYPE_CHECKING:
     from robolink.running.ports import ContextLike, Loop, NodeLike
@@ -170,38 +171,36 @@ class Receiver(Entity):
         drops_in_c = threaded and depth != ALL and prepare is None
         self.straight = prepare is None and not drops_in_c
         """True if an executor may take what arrives straight from the inbox: its mailbox would only hand it on."""
-        self._storage: KeepLast | None = None
-        self.mailbox: Mailbox
-        if drops_in_c:
-            self.mailbox = self._storage = KeepLast(depth, self, parking)
-        else:
-            self.mailbox = Mailbox(depth, self.become_ready, self.overflowed, prepare)
-        self.deliver: Callable[[Any], None] = self.mailbox.put
+        self.mailbox: KeepLast | Delivered
+        self.deliver: Callable[[Any], None]
         """Store what arrives, and be ready from then on."""
-        self.sink: functools.partial[Any] = parking.sink(self) if self._storage is None else self._storage.entrance
+        self.sink: functools.partial[Any]
+        """Sink for the network."""
+        self._to_inbox: functools.partial[Any]
+        """Sink that leads to the inbox, of what arrives or of notices; another inbox can take it over."""
+        if drops_in_c:
+            self.mailbox = kept = KeepLast(depth, self, parking)
+            self.deliver = self.sink = kept.entrance
+            self._to_inbox = kept.sink
+        else:
+            self.mailbox = Delivered(depth, self, prepare)
+            self.deliver = self.mailbox.put
+            self.sink = self._to_inbox = parking.sink(self)
 
     def attach(self, executor: Loop, has_turn: bool = False) -> None:
         """Belong to this `executor`, which holds its lock: what arrives goes to its inbox, what waited is ready."""
-        self._move(self._parking, executor._queue_.inbox)
+        queue = executor._queue_
+        self._move(self._parking, queue.inbox)
         super().attach(executor, has_turn)
-        has_turns = bool(self.lane) or not executor._queue_.in_rounds
-        if self._storage is not None:
-            self._storage.begin(executor._queue_, self, has_turn=has_turn, has_turns=has_turns)
-            return
-        self.mailbox.listed = has_turn and not has_turns
-        for _ in range(len(self.mailbox) - has_turn):
-            if not self.mailbox.listed:
-                self.become_ready()
+        has_turns = bool(self.lane) or not queue.in_rounds
+        self.mailbox.begin(queue, self, has_turn=has_turn, has_turns=has_turns)
 
     def detach(self) -> None:
         """Belong to no executor: what arrives waits in the context's inbox."""
         queue = self._queue_
         if queue is not None:
             with queue.lock:
-                if self._storage is not None:
-                    if self._storage.in_flood:
-                        queue.flooded.remove(self._storage)
-                    self._storage.end()
+                self.mailbox.end(queue)
                 self._move(queue.inbox, self._parking)
                 super().detach()
 
@@ -213,7 +212,7 @@ class Receiver(Entity):
 
     def redirect(self, inbox: Inbox) -> None:
         """Redirect what comes from now on to this `inbox`."""
-        inbox.take_over(self.sink if self._storage is None else self._storage.sink)
+        inbox.take_over(self._to_inbox)
 
     def become_ready(self) -> None:
         """Take a turn in the next round; as a part of a waitable, one turn more."""
@@ -239,16 +238,4 @@ class Receiver(Entity):
 
     def take(self) -> Any:
         """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
-        if self._storage is not None:
-            return self._storage.take_arrived(self)
-        mailbox = self.mailbox
-        waiting = mailbox.waiting
-        if not waiting:
-            mailbox.listed = False
-            return NOTHING
-        taken = waiting.popleft()
-        if not waiting:
-            mailbox.listed = False
-        elif mailbox.listed and self._queue_ is not None:
-            self._queue_.ready.append(self)
-        return taken
+        return self.mailbox.take_next(self)

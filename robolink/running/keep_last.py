@@ -92,7 +92,7 @@ class KeepLast(Mailbox):
         self.entrance: functools.partial[Any] = functools.partial(self._with_one_notice)
         """Sink for the network."""
         self.put = self.entrance
-        self.end()
+        self._store_silently()
 
     def _storing(self, notify: Callable[[], object]) -> Any:
         """Return a class whose instances append themselves to what waits, and call `notify` before."""
@@ -156,8 +156,13 @@ class KeepLast(Mailbox):
         else:
             self._rest()
 
-    def end(self) -> None:
-        """Store what arrives, and put no notices: no executor has it."""
+    def end(self, queue: ReadyQueue[Any]) -> None:
+        """Store what arrives, and put no notices: no executor has it any more. `queue` was the one that it had."""
+        if self.in_flood:
+            queue.flooded.remove(self)
+        self._store_silently()
+
+    def _store_silently(self) -> None:
         self._notices[_NOTICED] = self._turns = None
         self.listed = self.in_flood = False
         self._enter(self._with_one_notice)
@@ -199,11 +204,8 @@ class KeepLast(Mailbox):
         """Take the oldest. Raises IndexError if there is none."""
         return self.waiting.popleft().content
 
-    def take_arrived(self, receiver: Receiver, _: None = None) -> Any:
-        """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round.
-
-        It is what a notice stands for, or a turn of the receiver.
-        """
+    def take_next(self, receiver: Receiver, _: None = None) -> Any:
+        """Return the oldest of what waits, or NOTHING; what waits behind it has its turn in the next round."""
         waiting, queue = self.waiting, receiver._queue_
         if self._turns:
             self._turns -= 1
@@ -234,6 +236,9 @@ class KeepLast(Mailbox):
                     if waiting:
                         self._notify_once()
         return stored.content
+
+    take_arrived = take_next
+    """Return what a notice stands for."""
 
     def _note_gap(self, number: int, receiver: Receiver) -> None:
         last, dropped = self._taken
