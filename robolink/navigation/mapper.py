@@ -11,6 +11,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from robolink.geometry.plane import Pose, placed_on, seen_from
 from robolink.navigation.grid import Floats, Grid
@@ -28,9 +29,9 @@ _SURE = (0.02, 0.006)
 """Deviations (metres, radians) of what lies between two keyframes up to which matching them would bring nothing."""
 _BREAK = np.diag([1e4, 1e4, 1e2])
 """Covariance of a step that nothing was measured of: from the last pose of a map to the first one of a new start."""
-_STRANGE = (0.55, 0.25)
-"""Response below which a scan may not fit where the robot should be, and the share of its points that lie where earlier
-scans saw that nothing is, above which it does not."""
+_STRANGE = (0.55, 0.3)
+"""Response below which a scan may not fit where the robot should be, and the share of its beams that the map denies
+above which it does not."""
 _LOST_AFTER = 3
 """Scans in a row that do not fit, after which the robot counts as lost."""
 _GIVE_UP = 8.0
@@ -170,8 +171,44 @@ class Mapper:
         if begin is None or not self.keyframes:
             nothing = Match(begin or odometry, 0.0, np.zeros((3, 3)))
             return self._added(keyframe, nothing)
-        found = self._placed_near(keyframe, begin, reach=1.0, turn=0.6)
+        found = self._placed_near(keyframe, begin, reach=1.0, turn=0.6) or self._placed_anywhere(keyframe)
         return self._anchored(keyframe, found or Match(begin, 0.0, np.diag([0.25, 0.25, 0.1])))
+
+    def localize(self, beams: Beams, odometry: Pose) -> Fit | None:
+        """Find where a scan was made, and leave the map as it is; None if the robot has not moved enough.
+
+        Args:
+            beams: The scan, in the frame of the robot.
+            odometry: Pose of the robot by its odometry when it was made.
+        """
+        if not self.keyframes or (
+            self._odometry is not None and not self._has_moved(seen_from(self._odometry, odometry))
+        ):
+            return None
+        keyframe, guess = keyframe_of(beams), self.expected(odometry)
+        spread = np.diag([0.25, 0.25, 0.1])
+        if self._odometry is None:
+            guess, self._begin = self._begin or guess, None
+            match = self._placed_near(keyframe, guess, reach=1.0, turn=0.6) or Match(guess, 0.0, spread)
+        else:
+            spread = _odometry_spread(seen_from(self._odometry, odometry), self.pose.theta)
+            match = self._matched(keyframe, guess, spread, self._nearest(guess))
+        self._odometry = odometry
+        if not self._is_strange(match, keyframe, 0.0):
+            self.pose = match.pose
+            return Fit(match.pose, match.covariance, match.response)
+        found = self._placed_anywhere(keyframe) if self._strange >= _LOST_AFTER else None
+        self.pose = found.pose if found else guess
+        if found is None:
+            return Fit(guess, spread, match.response, is_lost=True)
+        self._strange = 0
+        return Fit(found.pose, found.covariance, found.response, is_found=True)
+
+    def _nearest(self, pose: Pose) -> list[int]:
+        """Return the keyframes nearest to a pose, as many as a scan is matched onto."""
+        far = np.hypot(*(self.graph.poses[:, :2] - pose[:2]).T)
+        found: list[int] = np.argsort(far, kind="stable")[: self.options.scan_buffer_size].tolist()
+        return found
 
     def _anchored(self, keyframe: Keyframe, match: Match) -> Fit:
         """Add a keyframe that does not follow the last one, tied to those around it."""
@@ -243,17 +280,25 @@ class Mapper:
         return not fits
 
     def _denied(self, keyframe: Keyframe, pose: Pose) -> float:
-        """Return the share of a scan's points that lie in free cells of the map, more than two from occupied ones."""
+        """Return the share of a scan's beams that the map denies: they end in free space, or go through a wall."""
         grid = self.grid()
-        row, column = grid.world_to_cell(*_placed(keyframe.points, pose).T)
-        around = np.pad(grid.cells, 2, constant_values=-1)
-        inside = grid.contains(row, column)
-        row, column = row[inside], column[inside]
-        free = grid.cells[row, column] == 0
-        for up in range(5):
-            for right in range(5):
-                free &= around[row + up, column + right] != 100
-        return float(free.sum()) / len(keyframe.points)
+        padded = grid._replace(cells=np.pad(grid.cells, 3, constant_values=-1))
+        far = np.sqrt(np.square(keyframe.points).sum(axis=1))
+        ends = _values(padded, _placed(keyframe.points, pose))
+        lone = (ends == 0) & ~self._near_wall(padded, _placed(keyframe.points, pose))
+        steps = np.arange(grid.resolution, max(float(far.max()), grid.resolution), grid.resolution)
+        ways = keyframe.points[:, None, :] * (steps[:, None] / np.maximum(far, 1e-9)[:, None, None])
+        walls = (_values(padded, _placed(ways.reshape(-1, 2), pose)) == 100).reshape(len(far), -1)
+        through = (walls & (steps < far[:, None] - 4 * grid.resolution)).any(axis=1)
+        return float((lone | through).mean())
+
+    def _near_wall(self, padded: Grid, points: Floats) -> npt.NDArray[np.bool_]:
+        """Return which points lie in an occupied cell or at most two from one."""
+        found = np.zeros(len(points), np.bool_)
+        for up in range(-2, 3):
+            for right in range(-2, 3):
+                found |= _values(padded, points + np.array([right, up]) * padded.resolution) == 100
+        return found
 
     def _sought(self, keyframe: Keyframe, guess: Match) -> Fit:
         """Look for the robot in the whole map once it is lost; map on where odometry says if that fails for long."""
@@ -268,9 +313,7 @@ class Mapper:
 
     def _placed_near(self, keyframe: Keyframe, guess: Pose, reach: float, turn: float) -> Match | None:
         """Match a scan onto the keyframes around a guess, however old they are; None if it does not fit."""
-        far = np.hypot(*(self.graph.poses[:, :2] - guess[:2]).T)
-        numbers = np.argsort(far, kind="stable")[: self.options.scan_buffer_size]
-        found = self._coarse_to_fine(keyframe, guess, numbers.tolist(), Window(reach, turn, 0.0175, (16, 4, 1)))
+        found = self._coarse_to_fine(keyframe, guess, self._nearest(guess), Window(reach, turn, 0.0175, (16, 4, 1)))
         return found if found is not None and found.response >= self.options.loop_match_minimum_response_fine else None
 
     def _placed_anywhere(self, keyframe: Keyframe) -> Match | None:
@@ -396,6 +439,14 @@ def _placed(points: Floats, pose: Pose) -> Floats:
     cos, sin = math.cos(pose.theta), math.sin(pose.theta)
     x, y = points[:, 0], points[:, 1]
     return np.column_stack((cos * x - sin * y + pose.x, sin * x + cos * y + pose.y))
+
+
+def _values(padded: Grid, points: Floats) -> npt.NDArray[np.int8]:
+    """Return the values of the cells that points lie in, by a grid that three unknown cells were added around."""
+    row, column = padded.world_to_cell(points[:, 0], points[:, 1])
+    height, width = padded.cells.shape
+    found: npt.NDArray[np.int8] = padded.cells[np.clip(row + 3, 0, height - 1), np.clip(column + 3, 0, width - 1)]
+    return found
 
 
 def _odometry_spread(moved: Pose, heading: float) -> Floats:

@@ -198,6 +198,27 @@ def test_a_map_goes_on_near_a_pose(start: Pose) -> None:
     assert math.dist(fits[-1].pose[:2], way(ROUND[:3])[-1][:2]) < 0.4
 
 
+def test_a_robot_localizes_itself_in_a_map_that_stays_as_it_is() -> None:
+    mapper = Mapper()
+    mapped(mapper, ROOM, way(ROUND))
+    before, odometry = len(mapper.keyframes), Pose(3.0, 1.0, -1.0)
+    mapper.begin_at(Pose(2.3, 1.3))
+    poses, fits = way(ROUND[:5], 0.5), []
+    for seed, (last, pose) in enumerate(itertools.pairwise([poses[0], *poses])):
+        odometry = placed_on(odometry, seen_from(last, pose))
+        fit = mapper.localize(scan_of(ROOM, pose, seed), odometry)
+        assert fit is None or math.dist(fit.pose[:2], pose[:2]) < 0.05
+        fits.append(fit)
+    assert sum(fit is not None for fit in fits) > 10
+    for seed in range(6):  # carried away
+        odometry = placed_on(odometry, Pose(0.6))
+        fit = mapper.localize(scan_of(ROOM, Pose(8.0, 2.0 + 0.6 * seed, math.pi / 2), seed), odometry)
+    assert fit is not None
+    assert math.dist(fit.pose[:2], (8.0, 5.0)) < 0.05
+    assert len(mapper.keyframes) == before
+    assert Mapper().localize(scan_of(ROOM, poses[0]), odometry) is None
+
+
 def test_keyframes_that_moved_are_drawn_anew() -> None:
     mapper = Mapper()
     mapped(mapper, ROOM, way(ROUND[:4]))
