@@ -20,11 +20,14 @@ from robolink.counterparts.nav2_costmap_2d.settings import (
     declare_static,
     layers_of,
 )
+from robolink.counterparts.nav2_util.parameters import keep_unknown
+from robolink.counterparts.nav2_util.robot_pose import in_frame
 from robolink.counterparts.program import spin_program
 from robolink.exceptions import ParameterException
 from robolink.geometry.plane import Pose, is_finite, pose_of
 from robolink.interfaces.geometry_msgs.msg import Polygon as PolygonMsg
 from robolink.interfaces.geometry_msgs.msg import PoseStamped
+from robolink.interfaces.lifecycle_msgs.msg import State
 from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from robolink.navigation.costmap import Costmap, Costs, InflationLayer, Layer, ObstacleLayer, StaticLayer
 from robolink.navigation.footprint import (
@@ -121,10 +124,7 @@ class Costmap2DROS(LifecycleNode):
 
     def transformed(self, pose: PoseStamped) -> Pose:
         """Return a pose in the costmap's frame; one without a frame is in it. Raises TransformException."""
-        frame = pose.header.frame_id
-        if frame not in ("", self.global_frame):
-            pose = self.tf_buffer.transform(pose, self.global_frame)
-        return pose_of(pose.pose)
+        return pose_of(in_frame(self.tf_buffer, pose, self.global_frame).pose)
 
     def is_current(self) -> bool:
         """Return whether the costs may be relied on: there is a map if one is needed, and sensors send what is due."""
@@ -212,6 +212,7 @@ class Costmap2DROS(LifecycleNode):
         self._others = [
             self.create_subscription(PolygonMsg, "footprint", self.on_footprint, 1),
         ]
+        keep_unknown(self)
         return SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -239,6 +240,13 @@ class Costmap2DROS(LifecycleNode):
         self.get_logger().info("Shutting down")
         self._withdraw()
         return SUCCESS
+
+    def end(self) -> None:
+        """Become unconfigured from whatever state, as its server does when it is cleaned up or ends."""
+        if self._state_machine.current_state[0] == State.PRIMARY_STATE_ACTIVE:
+            self.trigger_deactivate()
+        if self._state_machine.current_state[0] == State.PRIMARY_STATE_INACTIVE:
+            self.trigger_cleanup()
 
     def _stop(self) -> None:
         if self._timer is not None:

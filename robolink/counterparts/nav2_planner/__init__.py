@@ -1,0 +1,1 @@
+"""Counterpart of nav2_planner: paths through the global costmap."""
