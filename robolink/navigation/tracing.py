@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,8 @@ from robolink.navigation.grid import Floats, Whole
 
 _LINES = 2048
 """Lines that are traced together, which bounds the memory."""
+_ROUNDING = 1e-6
+"""Part of a cell by which a distance may be off."""
 
 
 class Span(NamedTuple):
@@ -71,11 +74,12 @@ def _half(major: Floats) -> Floats:
 
 def _ends(major: Floats, minor: Floats, lengths: Floats, span: Span) -> tuple[Floats, Floats]:
     """Return the numbers of the first and the last step of lines whose distances are bounded."""
-    lengths = np.maximum(lengths, 1e-9)
-    return np.ceil(major * (span.least / lengths)), np.floor(major * np.minimum(1.0, span.most / lengths))
+    lengths = np.maximum(lengths, 1.0)
+    least, most = major * (span.least / lengths), major * np.minimum(1.0, span.most / lengths)
+    return np.ceil(least - _ROUNDING), np.floor(most + _ROUNDING)
 
 
 def _steps_within(major: Floats, minor: Floats, room: npt.NDArray[Any]) -> Floats:
     """Return after how many steps a line has gone as far aside as there is `room`."""
-    steps: Floats = np.ceil(((room + 1) * major - _half(major)) / np.maximum(minor, 1e-9)) - 1
-    return steps
+    steps: Floats = np.ceil(((room + 1) * major - _half(major)) / np.maximum(minor, 1.0)) - 1
+    return np.where(minor > 0, steps, math.inf)
