@@ -130,6 +130,17 @@ class Costmap2DROS(LifecycleNode):
         """Return whether the costs may be relied on: there is a map if one is needed, and sensors send what is due."""
         return self._is_updated and all(each.is_current() for each in self._inputs)
 
+    def scan_topics(self) -> list[str]:
+        """Return the topics of the laser scans that it marks."""
+        topics = [each.topic for _, each in self._sensors if each.data_type == "LaserScan"]
+        return list(dict.fromkeys(topics))
+
+    def silence(self) -> float:
+        """Return the seconds for which the sensor of those in use that is silent longest has sent nothing of use."""
+        now = self.get_clock().now().nanoseconds
+        last = (each.last_ns for layer, each in self._sensors if layer.enabled)
+        return max((now - each for each in last), default=0) / 1e9
+
     # What the owner, or a service, does
 
     def clear(self) -> None:

@@ -146,7 +146,8 @@ class SensorInput:
             raise SettingsError(f"{self._name}.data_type: expected LaserScan or PointCloud2, got '{kind}'")
         self._pending: deque[LaserScan | PointCloud2] = deque(maxlen=SENSOR_DEPTH)
         self._observed: deque[tuple[int, Observation]] = deque(maxlen=SENSOR_DEPTH)
-        self._last = costmap.get_clock().now().nanoseconds
+        self.data_type = kind
+        self.last_ns = costmap.get_clock().now().nanoseconds
         self.topic = costmap.in_parent(self._parameters["topic"])
         qos = QoSProfile(depth=SENSOR_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         types = {"LaserScan": LaserScan, "PointCloud2": PointCloud2}
@@ -178,7 +179,7 @@ class SensorInput:
         self._pending.clear()
         self._pending.extend(reversed(waiting[:SENSOR_DEPTH]))
         if found:
-            self._last = self._node.get_clock().now().nanoseconds
+            self.last_ns = self._node.get_clock().now().nanoseconds
             if only_newest:
                 self._observed.clear()
             self._observed.extend(reversed(found))
@@ -220,7 +221,7 @@ class SensorInput:
     def is_current(self) -> bool:
         """Return whether messages come as often as they are expected."""
         expected = self._parameters["expected_update_rate"]
-        late = (self._node.get_clock().now().nanoseconds - self._last) / 1e9
+        late = (self._node.get_clock().now().nanoseconds - self.last_ns) / 1e9
         if not expected or late <= expected or not self._layer.enabled:
             return True
         self._warn(f"not updated for {late:.2f} s, and expected every {expected:.2f} s")
@@ -228,7 +229,7 @@ class SensorInput:
 
     def reset(self) -> None:
         """Count from now on how long nothing has come."""
-        self._last = self._node.get_clock().now().nanoseconds
+        self.last_ns = self._node.get_clock().now().nanoseconds
 
     def destroy(self) -> None:
         """Withdraw the subscription."""

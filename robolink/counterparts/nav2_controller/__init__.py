@@ -1,0 +1,1 @@
+"""Counterpart of nav2_controller: it drives along a path, round what is in the way."""
