@@ -170,7 +170,7 @@ class _Parser:
         parts = _PARAMETER.fullmatch(value)
         if parts is None:
             raise ValueError("expected name:=value or node:name:=value")
-        pattern = f"/{parts['node'] or '**'}"
+        pattern = f"/{(parts['node'] or '**').removeprefix('/')}"
         typed = parse_parameter_value(parts["value"], "value")
         self.overrides.append(Override(pattern, parts["name"], typed, is_typed=True))
 
@@ -195,7 +195,11 @@ class _Parser:
         self.settings["log_config_file"] = value
 
 
-_PARAMETER = late(r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)", re.DOTALL)
+_PARAMETER = late(
+    r"(?:(?P<node>/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)",
+    re.DOTALL,
+)
+"""A parameter of a node by its name or, which rcl does not know, by its full name."""
 _REMAP = (_Parser.remap, "from:=to")
 _PARAM = (_Parser.parameter, "name:=value")
 _ENCLAVE = (_Parser.enclave, "the path of an enclave")

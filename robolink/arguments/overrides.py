@@ -30,6 +30,15 @@ class Override(NamedTuple):
         """True if the pattern fits a node such as `/arm/driver`."""
         return _fits(self.pattern, full_node_name)
 
+    def is_for_child(self, full_node_name: str) -> bool:
+        """True if it is for a node that one such as `/r1/controller_server` may make itself.
+
+        These are known by a name that is that of their namespace, too: `/r1/local_costmap/local_costmap`.
+        """
+        namespace, _, name = self.pattern.rpartition("/")
+        around = f"{full_node_name.rpartition('/')[0]}/"
+        return "*" not in name and namespace == f"{around}{name}"
+
 
 def by_first_pattern(overrides: Iterable[Override]) -> list[Override]:
     """Sort the overrides of one command line as rcl keeps them: by patterns, in the order in which each first appears.

@@ -24,7 +24,7 @@ from robolink.interfaces import KINDS, names
 from robolink.interfaces.standard import FOLDER, INTERFACES
 from robolink.workspace.find import find_package, list_packages
 from robolink.workspace.installed import installed_packages, prefixes
-from robolink.workspace.programs import program_folder, program_names
+from robolink.workspace.programs import launched_packages, program_folder, program_names
 from robolink.workspace.ros_programs import instead_of
 from robolink.workspace.share import share_directory
 
@@ -257,4 +257,5 @@ def _folder(name: str) -> Path | None:
 
 def _counterparts() -> dict[str, Path]:
     """Return the ROS packages that have counterparts here, each with the folder of these."""
-    return {package: folder for package in program_names() if (folder := program_folder(package)) is not None}
+    names = {*program_names(), *launched_packages()}
+    return {package: folder for package in sorted(names) if (folder := program_folder(package)) is not None}

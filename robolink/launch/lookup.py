@@ -183,15 +183,28 @@ def included_file(name: str, home: Path | None, folder: Path) -> Path:
 def parameter_file(name: str, home: Path | None, folder: Path) -> Path:
     """Find a parameter file: from the launch file's `folder`, or from the workspace.
 
-    Raises `NotFoundError` with the nearest name beside it.
+    Two words are a package and a path in it, `nav2_bringup params/nav2_params.yaml`. Raises `NotFoundError` with the
+    nearest name beside it.
     """
-    path = expanded(name)
-    folders = _around(folder, home)
+    path, folders = expanded(name), _around(folder, home)
     found = _first(each / path for each in folders)
+    if found is None and (package := _package_of(name, home)) is not None:
+        path, folders = Path(name.partition(" ")[2].strip()), [package]
+        found = _first([package / path])
     if found is None:
-        beside = (str(path.with_name(each.name)) for each in (folder / path).parent.glob("*") if each.suffix in YAML)
+        beside = (
+            str(path.with_name(each.name)) for each in (folders[0] / path).parent.glob("*") if each.suffix in YAML
+        )
         raise NotFoundError("file", name, beside, " or ".join(map(str, folders)))
     return found
+
+
+def _package_of(name: str, home: Path | None) -> Path | None:
+    """Return the folder of the package that is the first of two words; None for any other name."""
+    package, _, path = name.partition(" ")
+    if not path.strip() or not package.isidentifier():
+        return None
+    return find_package(package, workspace=home) or program_folder(package)
 
 
 def command_of(run: Sequence[str], path: str | None) -> list[str] | None:

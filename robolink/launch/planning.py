@@ -255,7 +255,8 @@ def _for_ros(node: NodeToStart, wide: Collection[str]) -> Iterator[str]:
     if node.namespace:
         yield from ("-r", f"__ns:={node.namespace}")
     for name, value in node.parameters.items():
-        yield from (WIDE_PARAMETER if name in wide else "-p", f"{name}:={spell(value)}")
+        is_wide = name in wide and ":" not in name
+        yield from (WIDE_PARAMETER if is_wide else "-p", f"{name}:={spell(value)}")
     for match, replacement in node.remappings.items():
         yield from ("-r", f"{match}:={replacement}")
     if node.log_level:

@@ -28,7 +28,15 @@ from robolink.workspace.packages import (
     named_executables,
     source_packages,
 )
-from robolink.workspace.programs import NODES, executable_of, lacking_executable, nodes_in, program_names
+from robolink.workspace.programs import (
+    NODES,
+    component,
+    components,
+    executable_of,
+    lacking_executable,
+    nodes_in,
+    program_names,
+)
 from robolink.workspace.source import Folder, NodeSource, built_in_workspace, canonical
 from robolink.workspace.trust import is_trusted, why_not
 
@@ -45,12 +53,15 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     """Return the source of a node; the path in it is absolute.
 
     Args:
-        name: Name of the node, `FILE`, `FILE:function`, `FILE:Class`, or `PACKAGE EXECUTABLE`.
+        name: Name of the node, `FILE`, `FILE:function`, `FILE:Class`, `PACKAGE EXECUTABLE`, or `PACKAGE::CLASS`, the
+            C++ class of a component.
         workspace: Folder that serves as the user's workspace; None looks for it.
 
     Raises:
         NotFoundError: with the nearest name.
     """
+    if "::" in name:
+        return _component(name)
     file, attribute = _split(name)
     package, executable = two_words(name)
     if executable and not is_file(expanded(file)):
@@ -66,6 +77,16 @@ def find_node(name: str, *, workspace: Folder = None) -> NodeSource:
     if added is not None:
         return added._replace(attribute=attribute or added.attribute)
     raise _no_node(file, workspace)
+
+
+def _component(name: str) -> NodeSource:
+    """Return the source of a component. Raises NotFoundError with the nearest name."""
+    found = component(name)
+    if found is None:
+        package = name.partition("::")[0]
+        known = components()
+        raise NotFoundError("component", name, [each for each in known if each.startswith(f"{package}::")] or known)
+    return found
 
 
 def two_words(name: str) -> tuple[str, str]:

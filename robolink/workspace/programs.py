@@ -124,11 +124,18 @@ def sources_of(package: str) -> dict[str, NodeSource]:
     return found
 
 
+@functools.cache
+def launched_packages() -> frozenset[str]:
+    """Return the names of the ROS packages whose launch files robolink has: some have no programs."""
+    return frozenset(each.parent.name for each in (PACKAGE / "counterparts").glob("*/launch"))
+
+
 def program_folder(package: str) -> Path | None:
     """Return the folder of the programs of `package`, which may have launch files; None if it has none here."""
-    own = PACKAGE / "counterparts" / canonical(package)
-    if own.is_dir() and programs_of(package):
-        return own
+    if canonical(package) in launched_packages() or programs_of(package):
+        own = PACKAGE / "counterparts" / canonical(package)
+        if own.is_dir():
+            return own
     return next((each.path.parent for each in sources_of(package).values()), None)
 
 

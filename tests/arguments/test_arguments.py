@@ -205,3 +205,10 @@ def test_any_command_line_is_read_or_refused_with_a_documented_error(args: list[
         arguments = parse_arguments(args)
         assert list(arguments.unparsed) == remove_ros_args(args)
         assert isinstance(arguments.overrides_for("/a/b"), dict)
+
+
+def test_a_parameter_may_be_for_a_node_by_its_full_name() -> None:
+    given = ros("-p /r1/local_costmap/local_costmap:width:=3 -p driver:width:=4")
+    assert given.overrides_for("/r1/local_costmap/local_costmap") == {"width": 3}
+    assert given.overrides_for("/driver") == {"width": 4}
+    assert given.overrides_for("/r1/controller_server") == {}

@@ -34,6 +34,13 @@ def test_a_row_is_a_file_and_a_name_in_it() -> None:
     assert package.path.parts[-2:] == ("bag", "__init__.py")
 
 
+def test_a_component_is_found_by_its_class() -> None:
+    source = find_node("image_tools::Cam2Image")
+    assert (source.name, source.attribute) == ("cam2_image", "Cam2Image")
+    with pytest.raises(NotFoundError, match=r"no component named 'image_tools::Cam3Image' .*Cam2Image"):
+        find_node("image_tools::Cam3Image")
+
+
 @pytest.mark.usefixtures("ours")
 def test_a_users_own_package_goes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     own = write_package(tmp_path / "src", "ros_control_demo", {"info.py": "def main(): return 'own'\n"})

@@ -200,7 +200,8 @@ def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given])
     """Return the parameters of a node by name, nested names joined by dots; the last one given wins.
 
     `own` are the node's own, `given` those of the groups around it. Raises `DocumentError` for a file that the node
-    itself names and that has parameters for other nodes only.
+    itself names and that has parameters for other nodes only. Those of a file for nodes that the node may make itself
+    are called `/local_costmap/local_costmap:width`.
     """
     found: dict[str, Parameter] = {}
     for each in given:
@@ -209,6 +210,9 @@ def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given])
         fitting = [(o, at) for o, at in each.overrides if o.is_for(full_name)]
         if each.overrides and not fitting and each.file is not None and each.place is not None:
             raise each.place.error(_nothing_for(full_name, each.file, each.overrides))
+        for override, at in each.overrides if each.file is not None else ():
+            if override.is_for_child(full_name):
+                found[f"{override.pattern}:{override.name}"] = Parameter(override.value, at, is_wide=True)
         for override, at in fitting:
             is_wide = each.file is not None and "*" in override.pattern
             found[override.name] = Parameter(override.value, at, is_wide)

@@ -152,7 +152,7 @@ class EntryMaker:
             node=requested.what if source is None else source.spec,
             name=name,
             namespace=namespace,
-            parameters=own.values,
+            parameters=own.values if source is not None else own.without_children(),
             remappings=_remappings(requested.remappings, context),
             args=[*(["--ros-args", *extra, "--"] if extra else []), *others],
             **settings,

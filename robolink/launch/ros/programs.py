@@ -138,6 +138,10 @@ class Parameters(NamedTuple):
     since the launch file does not name it."""
     files: list[Path]
 
+    def without_children(self) -> dict[str, Any]:
+        """Return the values without those for nodes that the node makes itself, whose spelling rcl does not know."""
+        return {name: value for name, value in self.values.items() if ":" not in name}
+
 
 def parameters_of(
     parameters: Iterable[Any], full_name: str, is_named: bool, context: LaunchContext, say: Say, *, is_full: bool = True
@@ -180,6 +184,7 @@ def parameters_of(
             wide.update(each.name for each in found if "*" in each.pattern)
             found = [each for each in found if "*" not in each.pattern]
         wide.difference_update(each.name for each in found)
+    wide.update(name for name in gathered.values() if ":" in name)
     return Parameters(gathered.values(), frozenset(wide), gathered.words, gathered.files)
 
 
@@ -195,6 +200,8 @@ class _Gathered:
     def __init__(self, full_name: str, is_named: bool, say: Say) -> None:
         self._name, self._is_named, self._say = full_name, is_named, say
         self._by_pattern: dict[str, dict[str, Any]] = {}
+        self._of_children: dict[str, Any] = {}
+        """Parameters of nodes that the node may make itself, such as `/local_costmap/local_costmap:width`."""
         self.words: list[str] = []
         self.files: list[Path] = []
 
@@ -205,7 +212,7 @@ class _Gathered:
             for name, value in values.items():
                 found.pop(name, None)
                 found[name] = value
-        return found
+        return {**self._of_children, **found}
 
     def add(self, found: Iterable[Override], *, warn: bool = False) -> None:
         """Add those of `found` that are for the node; `warn` tells of texts that a node of ROS 2 reads otherwise."""
@@ -229,6 +236,9 @@ class _Gathered:
         self.files.append(path)
         if self._is_named or text is not None or all(each.pattern in ("/**", "/*") for each in overrides):
             self.add(overrides)
+            for each in overrides:
+                if each.is_for_child(self._name):
+                    self._of_children[f"{each.pattern}:{each.name}"] = _checked(each.name, each.value)
             return [each for each in overrides if each.is_for(self._name)]
         for name, value in self.values().items():  # what was given before comes before the file
             self.words.extend(("-p", f"{name}:={spell(value)}"))
