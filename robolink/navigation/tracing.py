@@ -74,9 +74,9 @@ def _half(major: Floats) -> Floats:
 
 def _ends(major: Floats, minor: Floats, lengths: Floats, span: Span) -> tuple[Floats, Floats]:
     """Return the numbers of the first and the last step of lines whose distances are bounded."""
-    lengths = np.maximum(lengths, 1.0)
-    least, most = major * (span.least / lengths), major * np.minimum(1.0, span.most / lengths)
-    return np.ceil(least - _ROUNDING), np.floor(most + _ROUNDING)
+    whole = np.maximum(lengths, 1.0)
+    first = np.where(lengths < span.least, math.inf, np.ceil(major * (span.least / whole) - _ROUNDING))
+    return first, np.floor(major * np.minimum(1.0, span.most / whole) + _ROUNDING)
 
 
 def _steps_within(major: Floats, minor: Floats, room: npt.NDArray[Any]) -> Floats:
