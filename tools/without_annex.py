@@ -49,6 +49,7 @@ ANNEXES = {
         "robolink/navigation",
         "tests/counterparts/test_nav2_*",
         "tests/navigation",
+        "tests/support/localization_lives.py",
         "tests/support/navigation_worlds.py",
         "tests/support/mapping_drives.py",
         "tests/support/scanned_rooms.py",

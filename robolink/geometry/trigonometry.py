@@ -22,7 +22,7 @@ _COSINE = [(-1.0) ** n / math.factorial(2 * n) for n in range(9, -1, -1)]
 
 
 def cos_and_sin(angles: Array) -> tuple[Array, Array]:
-    """Return the cosines and sines of angles of up to some turns, within a unit or two of the last place."""
+    """Return cosines and sines of `angles` (radians) of a few turns, within a unit or two in the last place."""
     quarters = np.rint(angles / _QUARTER)
     rest = (angles - quarters * _QUARTER_HEAD - quarters * _QUARTER_TAIL) - quarters * _QUARTER_REST
     square = rest * rest
@@ -32,7 +32,7 @@ def cos_and_sin(angles: Array) -> tuple[Array, Array]:
 
 
 def cos_and_sin_of(angle: float) -> tuple[float, float]:
-    """Return the cosine and sine of one angle: the same bits as `cos_and_sin`, and a tenth of the time."""
+    """Return the cosine and sine of one `angle`: the same bits as `cos_and_sin`, and a tenth of the time."""
     quarters = round(angle / _QUARTER)
     rest = (angle - quarters * _QUARTER_HEAD - quarters * _QUARTER_TAIL) - quarters * _QUARTER_REST
     square, cos, sin = rest * rest, _COSINE[0], _SINE[0]

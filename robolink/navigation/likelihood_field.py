@@ -38,7 +38,7 @@ _SIDES = ((0, 1), (0, -1), (1, 0), (-1, 0))
 
 
 class SensorModel(NamedTuple):
-    """What a beam may measure, as Nav2's parameters of the same names say.
+    """Model of what a beam may measure, with Nav2's parameters of the same names.
 
     `z_hit` and `z_rand` are the shares of beams that hit what the map has, and of those that end anywhere; `sigma_hit`
     the standard deviation of the former and `max_distance` the distance from which walls are not seen, in metres.
@@ -55,7 +55,7 @@ class LikelihoodField:
 
     Args:
         grid: Map with cells from 0 (free) to 100 (occupied), -1 for unknown.
-        model: What a beam may measure.
+        model: Model of what a beam may measure.
         range_max: Longest range of the scanner in metres.
     """
 
@@ -148,7 +148,7 @@ def surfaces(occupied: Bools, free: Bools) -> Bools:
 
 
 def _shifted(padded: Bools, up: int, right: int) -> Bools:
-    """Return what each cell has above and to the right of it."""
+    """Return the cells above and to the right of each: `up` rows and `right` columns off."""
     return padded[1 + up : padded.shape[0] - 1 + up, 1 + right : padded.shape[1] - 1 + right]
 
 

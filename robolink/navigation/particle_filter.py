@@ -33,7 +33,7 @@ from robolink.navigation.motion_models import wrap_headings
 
 POWER = 0.5
 """Greatest power to which the likelihood of a scan is taken."""
-SPREAD = 0.5
+SPREAD = 1.0
 """Standard deviation of the particles' places, in metres, from which they count as spread."""
 IN_EFFECT = 0.7
 """Least share of spread particles that must stay in effect after each scan."""

@@ -1,0 +1,1 @@
+"""Counterpart of nav2_amcl: where a robot is on a map, by a particle filter (adaptive Monte Carlo localization)."""

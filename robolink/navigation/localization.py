@@ -1,0 +1,231 @@
+"""Localization on a map: a particle filter that is fed with odometry and scans, as Nav2's AMCL is.
+
+localization = Localization(LocalizationOptions(), numpy.random.default_rng(1))
+localization.set_map(grid)
+localization.start_at(Pose(1.0, 2.0, 0.5), covariance)
+if localization.update(odometry, beams):
+    print(localization.estimate)
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from robolink.geometry.plane import Pose, placed_on, seen_from, wrapped
+from robolink.navigation.grid import Floats, Grid
+from robolink.navigation.likelihood_field import UNITS, LikelihoodField, SensorModel
+from robolink.navigation.motion_models import Alphas, MotionModel, move_differential
+from robolink.navigation.particle_filter import Estimate, FilterOptions, ParticleFilter
+
+MOST_FIELDS = 4
+"""Most likelihood fields that are held, one for each `range_max` of the scanners."""
+FASTEST = 10.0
+"""Speed in m/s, and in rad/s, above which odometry has jumped."""
+NEAR = 0.5
+"""Distance from a wall in metres within which a beam's end fits to the map."""
+
+
+class Beams(NamedTuple):
+    """Ends of a scan's beams, in metres `ahead` of the robot and to its left (`aside`), of one scanner."""
+
+    ahead: Floats
+    aside: Floats
+    range_max: float
+    scanner: str = ""
+
+
+class BeamSkip(NamedTuple):
+    """Options for leaving beams out that the map does not explain, with Nav2's parameters of similar names.
+
+    A beam agrees with a particle if it ends within `distance` metres of a wall; one that agrees with no more than the
+    share `threshold` of the particles is left out, unless as many as the share `error_threshold` of all beams were.
+    """
+
+    distance: float = 0.5
+    threshold: float = 0.3
+    error_threshold: float = 0.9
+
+
+class LocalizationOptions(NamedTuple):
+    """Options, with Nav2's parameters of the same names and their defaults; `skip` of None uses every beam."""
+
+    particles: FilterOptions = FilterOptions()
+    sensor: SensorModel = SensorModel()
+    alphas: Alphas = Alphas()
+    motion: MotionModel = move_differential
+    skip: BeamSkip | None = None
+    update_min_d: float = 0.25
+    update_min_a: float = 0.2
+    resample_interval: int = 1
+
+
+class Localization:
+    """Estimate of a robot's pose on a map.
+
+    Args:
+        options: Options.
+        random: Generator of all that is drawn.
+    """
+
+    estimate: Estimate | None = None
+    """Latest estimate, at the last update; None before the first one."""
+    fit: float = 1.0
+    """Share of the last scan's beams that end near a wall of the map, as seen from the estimated pose."""
+
+    def __init__(self, options: LocalizationOptions, random: np.random.Generator) -> None:
+        self._options = options
+        self._fields: dict[float, LikelihoodField] = {}
+        self._grid: Grid | None = None
+        self._places: Floats = np.empty((2, 0))
+        self.particles = ParticleFilter(options.particles, random)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Wait for the first scan, which is used wherever the robot is."""
+        self.estimate = None
+        self._updated_at: Pose | None = None
+        self._seen_at: Pose | None = None
+        self._due: dict[str, bool] = {}
+        self._updates, self.is_forced = 0, False
+
+    @property
+    def options(self) -> LocalizationOptions:
+        """Options; new ones hold from the next scan on, and the particles stay."""
+        return self._options
+
+    @options.setter
+    def options(self, options: LocalizationOptions) -> None:
+        self._options, self.particles.options = options, options.particles
+        self._fields = {}
+
+    def set_map(self, grid: Grid) -> None:
+        """Use a map, in place of another one, of cells from 0 (free) to 100, -1 for unknown; the particles stay."""
+        self._grid, self._fields = grid, {}
+        self._places = np.array(grid.cell_to_world(*(grid.cells == 0).nonzero()))
+
+    @property
+    def has_map(self) -> bool:
+        """True once a map is there."""
+        return self._grid is not None
+
+    # Beginnings
+
+    def start_at(self, pose: Pose, covariance: Floats) -> None:
+        """Begin about a pose; the covariance is that of x, y and heading (3 x 3)."""
+        self.particles.scatter_about(pose, covariance)
+        self._begin()
+
+    def start_anywhere(self) -> bool:
+        """Begin with poses in all free cells of the map; return False if there is none."""
+        if self._grid is None or not self._places.shape[1]:
+            return False
+        self.particles.scatter_over(self._places, self._grid.resolution)
+        self._begin()
+        return True
+
+    def forget_odometry(self) -> None:
+        """Take the next odometry as a beginning: it was set back, and not by driving."""
+        self._updated_at = self._seen_at = None
+
+    # Scans
+
+    def update(self, odometry: Pose, beams: Beams, seconds: float = math.inf) -> bool:
+        """Take a scan; return True if it was used, since the robot has moved far enough, or it was requested.
+
+        Args:
+            odometry: Pose of the robot by odometry at the time of the scan.
+            beams: Scan.
+            seconds: Time since the last scan, by which a jump of odometry is told from a way.
+
+        Returns:
+            True if there is a new estimate.
+        """
+        self.note_jump(odometry, seconds)
+        if self._grid is None or not self._is_due(odometry, beams.scanner):
+            return False
+        if self._updated_at is not None:
+            motion, alphas = self._options.motion, self._options.alphas
+            self.particles.move(partial(_moved, motion, self._updated_at, odometry, alphas))
+        self._updated_at, self._due[beams.scanner], self.is_forced = odometry, False, False
+        field = self._field(beams.range_max)
+        self._weigh(field, beams)
+        self.estimate = self.particles.estimate()
+        self.fit = self._fit(field, beams)
+        self._updates += 1
+        if self._updates % max(self._options.resample_interval, 1) == 0:
+            self.particles.resample(self._places, self._grid.resolution)
+        return True
+
+    def note_jump(self, odometry: Pose, seconds: float) -> bool:
+        """Return True if odometry has jumped since the last scan, `seconds` ago; a jump does not count as driven."""
+        last, self._seen_at = self._seen_at, odometry
+        if last is None or self._updated_at is None:
+            return False
+        most = FASTEST * max(seconds, 0.1)
+        if math.dist(last[:2], odometry[:2]) <= most and abs(wrapped(last.theta - odometry.theta)) <= most:
+            return False
+        self._updated_at = placed_on(odometry, seen_from(last, self._updated_at))
+        return True
+
+    def _is_due(self, odometry: Pose, scanner: str) -> bool:
+        """Return True if a scanner's scan is to be used: each has its turn whenever the robot has moved."""
+        self._due.setdefault(scanner, True)
+        last = self._updated_at
+        far, turned = self._options.update_min_d, self._options.update_min_a
+        if last is None or self.is_forced or _is_beyond(last, odometry, far, turned):
+            self._due = dict.fromkeys(self._due, True)
+        return self._due[scanner]
+
+    def _field(self, range_max: float) -> LikelihoodField:
+        assert self._grid is not None
+        if range_max not in self._fields:
+            if len(self._fields) == MOST_FIELDS:
+                del self._fields[next(iter(self._fields))]
+            self._fields[range_max] = LikelihoodField(self._grid, self._options.sensor, range_max)
+        return self._fields[range_max]
+
+    def _weigh(self, field: LikelihoodField, beams: Beams) -> None:
+        ratings = field.ratings(self.particles.poses, beams.ahead, beams.aside)
+        skip = self._options.skip
+        if skip is not None and ratings.size:
+            ratings = ratings[:, _agreed(ratings, field.rating(skip.distance), skip)]
+        self.particles.weigh(ratings.sum(axis=1, dtype=np.int32) / UNITS, ratings.shape[1])
+
+    def _fit(self, field: LikelihoodField, beams: Beams) -> float:
+        if self.estimate is None or not len(beams.ahead):
+            return 1.0
+        ratings = field.ratings(np.array(self.estimate.pose)[:, None], beams.ahead, beams.aside)
+        return float((ratings >= field.rating(NEAR)).mean())
+
+    # Results
+
+    def origin_of_odometry(self) -> Pose | None:
+        """Return the pose on the map of odometry's origin: the transform from the map to it. None before a scan."""
+        if self.estimate is None or self._updated_at is None:
+            return None
+        return placed_on(self.estimate.pose, seen_from(self._updated_at, Pose()))
+
+
+def _moved(
+    motion: MotionModel, before: Pose, after: Pose, alphas: Alphas, poses: Floats, random: np.random.Generator
+) -> None:
+    motion(poses, before, after, alphas, random)
+
+
+def _is_beyond(last: Pose, now: Pose, far: float, turned: float) -> bool:
+    """Return True if a robot has moved by more than a way along x or y, or a turn."""
+    moved = max(abs(now.x - last.x), abs(now.y - last.y))
+    return moved > far or abs(wrapped(now.theta - last.theta)) > turned
+
+
+def _agreed(ratings: npt.NDArray[np.int16], least: int, skip: BeamSkip) -> npt.NDArray[np.bool_]:
+    """Return which beams are used."""
+    used: npt.NDArray[np.bool_] = (ratings >= least).mean(axis=0) > skip.threshold
+    if (~used).mean() >= skip.error_threshold:
+        used[:] = True  # the pose may be wrong, not the beams
+    return used
