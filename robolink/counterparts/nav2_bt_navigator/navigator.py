@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import deque
 from collections.abc import Callable, Coroutine
 from typing import Any
@@ -14,6 +15,7 @@ from robolink.counterparts.nav2_bt_navigator.progress import Places, Speed, metr
 from robolink.counterparts.nav2_bt_navigator.servers import Servers
 from robolink.counterparts.nav2_util.robot_pose import fault, in_frame, robot_pose
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
+from robolink.counterparts.program import pause
 from robolink.duration import Duration
 from robolink.exceptions import RobolinkError
 from robolink.interfaces.geometry_msgs.msg import PoseStamped
@@ -30,6 +32,8 @@ FEEDBACK_PERIOD = 0.1
 """Time between two messages of feedback, in seconds."""
 OLDEST = 2.0
 """Age in seconds from which a pose counts as not known: localization has ended, or odometry."""
+PATIENCE = 1.0
+"""Longest wait for a pose at the begin, in seconds."""
 LOST = 5.0
 """Seconds without a pose after which the navigation has failed."""
 SETTLE = 1.0
@@ -112,6 +116,7 @@ class Navigator:
         timer = None
         try:
             try:
+                await self._pose_known()
                 trip = self._begun(self.server.goal)
             except GoalError as error:
                 self._log.error(str(error))
@@ -153,6 +158,15 @@ class Navigator:
             if not self._events:
                 self._awake = Future()
                 await self._awake
+
+    async def _pose_known(self) -> None:
+        """Wait until the robot's pose is known, for `PATIENCE` at most: localization may have begun just now."""
+        until = self._now() + PATIENCE * 1e9
+        while self._now() < until and not self.server.is_cancel_requested:
+            with contextlib.suppress(TransformException):
+                robot_pose(self._buffer, self._node, self._frame, self._base, OLDEST)
+                return
+            await pause(self._node, FEEDBACK_PERIOD, self._group)
 
     def _begun(self, goal: Any) -> Trip:
         """Return the trip of a goal. Raises GoalError."""

@@ -71,6 +71,7 @@ class Costmap2DROS(LifecycleNode):
             options = _options_of_child(name, parent) | options
         super().__init__(name, **options)
         self.get_logger().info("Creating Costmap")
+        self._owner: Node = self if parent is None else parent
         self._costmap = Costmap(Grid(np.zeros((1, 1), np.uint8), 1.0), [])
         self._layers: dict[str, Layer] = {}
         self._inputs: list[MapInput | SensorInput] = []
@@ -223,7 +224,7 @@ class Costmap2DROS(LifecycleNode):
         self._others = [
             self.create_subscription(PolygonMsg, "footprint", self.on_footprint, 1),
         ]
-        keep_unknown(self)
+        keep_unknown(self, is_child=self._owner is not self)
         return SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -285,7 +286,9 @@ class Costmap2DROS(LifecycleNode):
         kinds = layers_of(self, [each for each in parameters["plugins"] if each])
         if filters := [each for each in parameters["filters"] if each]:
             self.get_logger().warning(f"costmap filters are not here: ignored {', '.join(filters)}")
-        self._listener = TransformListener(self.tf_buffer, self)
+        self._listener = TransformListener(
+            self.tf_buffer, self._owner
+        )  # whose launch file may have another name for /tf
         default = UNKNOWN if parameters["track_unknown_space"] else FREE
         self._layers = {name: self._made(name, kind, default) for name, kind in kinds.items()}
         self._read()
