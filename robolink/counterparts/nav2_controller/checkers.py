@@ -49,7 +49,7 @@ class PositionOptions:
 
 
 class GoalChecker:
-    """Tells whether the goal is reached: place, heading, and speed, as far as its options have them."""
+    """Checker of the goal: place, heading, and speed, as far as its options have them."""
 
     def __init__(self, options: GoalOptions | PositionOptions) -> None:
         self.options = options
@@ -96,7 +96,7 @@ class PoseProgressOptions(ProgressOptions):
 
 
 class ProgressChecker:
-    """Tells whether the robot gets on: it moves, or turns, in the time that it has for this."""
+    """Checker of progress: the robot moves, or turns, in the time that it has for this."""
 
     def __init__(self, options: ProgressOptions) -> None:
         self.options = options
