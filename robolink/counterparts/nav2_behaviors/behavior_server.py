@@ -53,7 +53,7 @@ class BehaviorServer(LifecycleNode):
     """A managed node with actions such as spin, backup and wait. `options` are those of `Node`."""
 
     collisions: CollisionChecker
-    """What collides; there while the node is configured."""
+    """Checker of collisions; there while the node is configured."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("behavior_server", **options)
