@@ -46,8 +46,10 @@ ANNEXES = {
     ],
     "nav2": [
         "robolink/counterparts/nav2_*",
+        "robolink/counterparts/slam_toolbox",
         "robolink/navigation",
         "tests/counterparts/test_nav2_*",
+        "tests/counterparts/test_slam_toolbox.py",
         "tests/navigation",
         "tests/support/localization_lives.py",
         "tests/support/navigation_worlds.py",

@@ -38,8 +38,15 @@ class Beams(NamedTuple):
         return self.ends[: self.hits]
 
 
+class Lidar(NamedTuple):
+    """Mount of a lidar on the robot: its place in metres, and the upper left part of its rotation matrix."""
+
+    place: tuple[float, float] = (0.0, 0.0)
+    turn: Floats = np.eye(2)
+
+
 def beams_of(
-    ranges: npt.ArrayLike, angles: npt.ArrayLike, limits: tuple[float, float], used: float, lidar: Pose
+    ranges: npt.ArrayLike, angles: npt.ArrayLike, limits: tuple[float, float], used: float, lidar: Lidar
 ) -> Beams:
     """Return the beams of a scan; those that came back from nowhere, from too near or as NaN are left out.
 
@@ -48,15 +55,18 @@ def beams_of(
         angles: Directions of the beams in the frame of the lidar, in radians, as many.
         limits: Least and largest distance that the lidar measures; at these and beyond nothing was measured.
         used: Distance in metres from which on a beam only says that the way up to there is free.
-        lidar: Pose of the lidar on the robot.
+        lidar: Its mount on the robot.
     """
-    far, turns = np.asarray(ranges, np.float64), np.asarray(angles, np.float64)
+    far, angle = np.asarray(ranges, np.float64), np.asarray(angles, np.float64)
     measured = (far > limits[0]) & (far < limits[1])  # NaN is neither
-    far, turns = far[measured], turns[measured] + lidar.theta
+    far, angle = far[measured], angle[measured]
     order = np.argsort(far >= used, kind="stable")
-    far, turns = np.minimum(far, used)[order], turns[order]
-    ends = np.column_stack((lidar.x + far * np.cos(turns), lidar.y + far * np.sin(turns)))
-    return Beams(ends, int((far < used).sum()), (lidar.x, lidar.y))
+    hits = int((far < used).sum())
+    far, angle = np.minimum(far, used)[order], angle[order]
+    x, y = far * np.cos(angle), far * np.sin(angle)
+    turn, place = lidar.turn, lidar.place
+    ends = np.column_stack((turn[0, 0] * x + turn[0, 1] * y + place[0], turn[1, 0] * x + turn[1, 1] * y + place[1]))
+    return Beams(ends, hits, place)
 
 
 class Occupancy:
@@ -155,7 +165,7 @@ def _traced(begin: Floats, ends: Floats, width: int) -> npt.NDArray[np.int64]:
     """Return the numbers of the cells that beams pass before those in which they end, one for each step and beam."""
     way = ends - begin
     steps = np.maximum(np.abs(way).max(axis=1), 1e-9)
-    counts = np.maximum(np.ceil(steps).astype(np.int64), 1)
+    counts = (1.01 * steps).astype(np.int64) + 1  # less than a cell apart, whatever the rounding
     beam = np.repeat(np.arange(len(ends)), counts)
     number = np.arange(len(beam)) - np.repeat(np.cumsum(counts) - counts, counts)
     share = (number / counts[beam]).astype(np.float32)

@@ -53,7 +53,7 @@ _DAMAGED = (
     *(ArithmeticError, EOFError, KeyError, MemoryError, RuntimeError, SyntaxError, TypeError, ValueError),
     *(struct.error, tokenize.TokenError, zipfile.BadZipFile, zipfile.LargeZipFile, zlib.error),
 )
-"""What zipfile and numpy raise for files that are damaged, or something else."""
+"""Exceptions of zipfile and numpy for files that are damaged, or something else."""
 _LARGEST = 2_000_000_000
 """Bytes that an array of a file may have."""
 
@@ -69,7 +69,7 @@ def path_of(name: str) -> Path:
 
 
 def save(path: Path, mapper: Mapper) -> None:
-    """Write what a mapper knows into a file, which is there as a whole or not at all.
+    """Write the map of a mapper, with its scans, into a file, which is there as a whole or not at all.
 
     Args:
         path: The file; one that is there is replaced.

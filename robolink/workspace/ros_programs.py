@@ -70,7 +70,7 @@ PACKAGES = {
     "nav2_*": _NAVIGATION,
     "opennav_*": _NAVIGATION,
     "turtlebot3_navigation2": _NAVIGATION,
-    "slam_toolbox": _MAPS,
+    "slam_toolbox": f"its nodes that map and localize are here, what remains is in C++; {_THERE}",
     "cartographer_ros": _MAPS,
     "turtlebot3_cartographer": _MAPS,
     "rtabmap_*": _MAPS,

@@ -37,7 +37,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (["gazebo_ros"], "'robolink run world' simulates a robot"),
         (["controller_manager", "spawner"], "which are C++; 'robolink run world'"),
         (["nav2-controller", "controller_server"], "'robolink launch goto'"),
-        (["slam_toolbox", "async_slam_toolbox_node"], "on a machine with ROS 2"),
+        (["cartographer_ros", "cartographer_node"], "on a machine with ROS 2"),
         (["moveit_ros_move_group", "move_group"], "on a machine with ROS 2"),
     ],
 )
@@ -66,7 +66,7 @@ def test_a_package_of_ones_own_goes_first(elsewhere: Path, capsys: Captured) -> 
 
 def test_what_nobody_knows_has_nothing_instead() -> None:
     assert instead_of("pkg_a", "talker") is None
-    assert instead_of("slam_toolbox", "x") == PACKAGES["slam_toolbox"]
+    assert instead_of("octomap_server", "x") == PACKAGES["octomap_server"]
     assert instead_of("ros_gz_sim", "create") == PROGRAMS["ros_gz_sim", "create"]
     assert instead_of("ros-gz-sim") == instead_of("ros_gz_bridge", "bridge_node") == PACKAGES["ros_gz*"]
 

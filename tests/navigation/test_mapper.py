@@ -12,7 +12,7 @@ import pytest
 
 from robolink.geometry.plane import Pose, placed_on, seen_from
 from robolink.navigation.mapper import Fit, Mapper, Options
-from robolink.navigation.occupancy import Beams, beams_of
+from robolink.navigation.occupancy import Beams, Lidar, beams_of
 from tests.support import mapping_drives
 from tests.support.mapping_drives import Drive, driven, wall_distances
 from tests.support.scanned_rooms import CORRIDOR, ROOM, Walls, points
@@ -69,7 +69,7 @@ def map_drive(mapper: Mapper, drive: Drive) -> np.ndarray:
     truth = []
     for true, odometry, ranges in zip(drive.truth, drive.odometry, drive.ranges, strict=True):
         before = len(mapper.keyframes)
-        mapper.process(beams_of(ranges, drive.angles, (0.12, 12.0), 12.0, Pose()), Pose(*odometry.tolist()))
+        mapper.process(beams_of(ranges, drive.angles, (0.12, 12.0), 12.0, Lidar()), Pose(*odometry.tolist()))
         if len(mapper.keyframes) > before:
             truth.append(true)
     return np.array(truth)

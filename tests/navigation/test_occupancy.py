@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from robolink.geometry.plane import Pose
 from robolink.navigation.grid import Grid
-from robolink.navigation.occupancy import Beams, Occupancy, beams_of
+from robolink.navigation.occupancy import Beams, Lidar, Occupancy, beams_of
 from tests.support.scanned_rooms import ROOM, points
 
 STAND = Pose(2.0, 2.0, 0.3)
@@ -128,7 +128,7 @@ def test_scans_that_are_too_far_apart_for_one_map_are_refused() -> None:
 
 def test_beams_are_what_was_measured() -> None:
     ranges = [1.0, math.nan, math.inf, -math.inf, 0.05, 0.1, 8.0, 9.9, 10.0, 2.0, -1.0]
-    lidar = Pose(0.5, 0.25, math.pi / 2)
+    lidar = Lidar((0.5, 0.25), np.array([[0.0, -1.0], [1.0, 0.0]]))
     beams = beams_of(ranges, np.zeros(len(ranges)), (0.1, 10.0), 5.0, lidar)
     assert beams.origin == (0.5, 0.25)
     assert np.allclose(beams.ends, [[0.5, 1.25], [0.5, 2.25], [0.5, 5.25], [0.5, 5.25]])

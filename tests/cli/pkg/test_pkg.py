@@ -191,7 +191,7 @@ def test_executables_are_what_run_runs(capsys: Captured) -> None:
         ("executables no_such_pkg", "no package named 'no_such_pkg'"),
         ("xml geometry_msgs", "since the package comes with robolink"),
         ("xml pkg_new --tag licence", "(did you mean 'license'?)"),
-        ("prefix slam_toolbox", "no package named 'slam_toolbox'"),
+        ("prefix cartographer_ros", "no package named 'cartographer_ros'"),
     ],
 )
 def test_what_is_not_there_is_one_line(words: str, report: str, capsys: Captured) -> None:

@@ -29,8 +29,8 @@ LEFT_OUT = [
         "left out: g.launch.py, since package nobody is not here",
     ),
     (
-        'IncludeLaunchDescription(get_package_share_directory("slam_toolbox") + "/launch/online_async_launch.py")',
-        "left out: online_async_launch.py, since package slam_toolbox is not here: ",
+        'IncludeLaunchDescription(get_package_share_directory("cartographer_ros") + "/launch/mapping_launch.py")',
+        "left out: mapping_launch.py, since package cartographer_ros is not here: ",
     ),
     (
         'OpaqueFunction(function=lambda context: open(get_package_share_directory("nobody") + "/urdf/x"))',

@@ -1,0 +1,1 @@
+"""Counterpart of slam_toolbox: a map of a lidar's scans, and where the robot is in it (simultaneous localization)."""
