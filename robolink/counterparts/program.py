@@ -63,7 +63,7 @@ async def pause(node: Node, seconds: float, group: CallbackGroup) -> None:
 
     Args:
         node: The node.
-        seconds: How long.
+        seconds: How long; what is over already, as on a clock that runs on while it is computed, lasts no time.
         group: Callback group of the timer, in which nothing may wait for this coroutine.
     """
     done: Future[None] = Future()
@@ -72,7 +72,7 @@ async def pause(node: Node, seconds: float, group: CallbackGroup) -> None:
         if not done.done():
             done.set_result(None)
 
-    timer = node.create_timer(seconds, wake, callback_group=group)
+    timer = node.create_timer(max(0.0, seconds), wake, callback_group=group)
     try:
         await done
     finally:

@@ -202,3 +202,16 @@ def test_parameters_without_effect_are_kept_and_named_once(system: System) -> No
     assert list(node.get_parameter("FollowPath.critics").value) == ["a", "b"]
     system.expect_log("parameters without effect in robolink: FollowPath.critics, sped")
     assert len([each for each in system.logs if "without effect" in each.message]) == 1
+
+
+def test_a_pause_until_a_moment_that_is_over_ends_at_once(system: System) -> None:
+    paused: list[bool] = []
+
+    async def wait(node: Node) -> None:
+        await pause(node, -7.6e-06, ReentrantCallbackGroup())
+        paused.append(True)
+
+    assert system.node.executor is not None
+    system.node.executor.create_task(wait(system.node))
+    system.run(0.1)
+    assert paused
