@@ -82,11 +82,13 @@ class GivenParameters:
         self._warn_of_sections()
         if not self._open:
             return
+        nodes = list(nodes)
         for node in nodes:
             self.look(node)
-        names = self._declared - {each.name for each in self._seen.values()}
+        given = {each.name for each in self._seen.values()}
         for key, (each, logger) in list(self._open.items()):
-            near = closest(each.name, names, ALIKE)
+            own = (node._declared_so_far_ for node in nodes if each.is_for(node.get_fully_qualified_name()))
+            near = closest(each.name, set().union(*own) - given, ALIKE)
             if near:
                 del self._open[key]
                 _warn(each, logger, f"no node has declared it so far (did you mean '{near}'?)")

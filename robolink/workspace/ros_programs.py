@@ -17,11 +17,11 @@ _WEBOTS = "Webots' driver; 'robolink run world' reads Webots' worlds and robots 
 _URDF_ROBOT = (
     "a world takes its robots from its own file: put a Robot node into its .wbt file (docs/reference/webots.md)"
 )
-_NAVIGATION = "a server of Nav2, in C++; 'robolink launch goto' drives to the goals of Nav2's action instead"
+_NAVIGATION = "a part of Nav2, in C++; 'robolink launch navigate' has those that localize, plan, drive and recover"
 _FILTER = f"a Kalman filter in C++; the world's /odom needs none, for a real robot {_THERE}"
 _DRIVER = f"driver of a device, in C++; {_THERE}"
 _CAMERA = f"driver of a camera, in C++; some lines with cv2.VideoCapture and cv_bridge do the same, else {_THERE}"
-_MAPS = f"makes maps, in C++; {_THERE}"
+_MAPS = f"makes maps, in C++; 'robolink launch map_it' does, too, else {_THERE}"
 
 PROGRAMS = {
     ("rmw_zenoh_cpp", "rmw_zenohd"): "robolink needs no router, and meets one that runs (docs/reference/ros2.md)",

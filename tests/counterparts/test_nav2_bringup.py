@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from robolink.companions.ament_index import get_package_share_directory
+from robolink.geometry.plane import Pose
+from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.launch import plan, shared_process
 from robolink.launch.lookup import find, parameter_file
+from robolink.testing import System
+from tests.support.navigation_lives import pose_message
 
 SHARE = Path(get_package_share_directory("nav2_bringup"))
 
@@ -30,3 +36,33 @@ def test_a_launch_file_names_the_parameters_of_a_package(tmp_path: Path) -> None
     (member,) = shared_process.read(process.input)
     assert "max_beams:=60" in member.args
     assert "/local_costmap/local_costmap:width:=3" in member.args  # the server makes that node itself
+
+
+@pytest.mark.slow
+def test_navigate_drives_to_a_click_in_the_page(system: System) -> None:
+    system.launch("navigate")
+    system.expect_log("Managed nodes are active", within=10.0)
+    system.run(1.0)
+    system.publish("/goal_pose", pose_message(Pose(4.0, 4.2, 1.57)))
+    system.expect_log("Goal succeeded", within=30.0)
+    robot = system.robot()
+    assert math.dist((robot.pose.x, robot.pose.y), (4.0, 4.2)) < 0.35
+    assert robot.contacts == 0
+
+
+@pytest.mark.slow
+def test_map_it_makes_a_map_while_somebody_drives(system: System) -> None:
+    system.launch("map_it")
+    system.expect_log("Managed nodes are active", within=10.0)
+    system.run(1.0)
+    before = known(system)
+    for _ in range(60):
+        system.publish("/cmd_vel", Twist(linear=Vector3(x=0.4)))
+        system.run(0.1)
+    system.run(6.0)
+    assert known(system) > before > 1000
+
+
+def known(system: System) -> int:
+    """Count the cells of the map that are known."""
+    return sum(each >= 0 for each in system.expect("/map", type=OccupancyGrid).data)

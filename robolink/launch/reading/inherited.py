@@ -205,20 +205,26 @@ def parameters_for(full_name: str, given: Iterable[Given], own: Iterable[Given])
     """
     found: dict[str, Parameter] = {}
     for each in given:
+        found.update(_for_children(full_name, each))
         found.update((o.name, Parameter(o.value, at, is_wide=True)) for o, at in each.overrides if o.is_for(full_name))
     for each in own:
         fitting = [(o, at) for o, at in each.overrides if o.is_for(full_name)]
         if each.overrides and not fitting and each.file is not None and each.place is not None:
             raise each.place.error(_nothing_for(full_name, each.file, each.overrides))
-        for override, at in each.overrides if each.file is not None else ():
-            if override.is_for_child(full_name):
-                found[f"{override.pattern}:{override.name}"] = Parameter(override.value, at, is_wide=True)
+        found.update(_for_children(full_name, each))
         for override, at in fitting:
             is_wide = each.file is not None and "*" in override.pattern
             found[override.name] = Parameter(override.value, at, is_wide)
     if len(found) > MOST_PARAMETERS:
         raise next(reversed(found.values())).place.error(_TOO_MANY)
     return found
+
+
+def _for_children(full_name: str, given: Given) -> Iterator[tuple[str, Parameter]]:
+    """Yield the parameters of a file for nodes that the program of a node may make, called `/child/child:name`."""
+    for override, at in given.overrides if given.file is not None else ():
+        if override.is_for_child(full_name):
+            yield f"{override.pattern}:{override.name}", Parameter(override.value, at, is_wide=True)
 
 
 def _nothing_for(full_name: str, file: Path, overrides: Iterable[tuple[Override, Place]]) -> str:
