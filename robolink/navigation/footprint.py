@@ -17,6 +17,8 @@ UNKNOWN, LETHAL, INSCRIBED, FREE = 255, 254, 253, 0
 
 CORNERS = 16
 """Corners of the polygon that stands for a circle, as in Nav2."""
+_EDGES = 32
+"""Edges of a polygon that points are compared with at once."""
 MOST_CORNERS = 1000
 FARTHEST = 100.0
 """Largest distance of a corner from the origin, in metres."""
@@ -88,9 +90,12 @@ def contains(polygon: Floats, points: Floats) -> npt.NDArray[np.bool_]:
     """
     inside = np.zeros(len(points), bool)
     x, y = points[:, 0], points[:, 1]
-    for (x1, y1), (x2, y2) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        if y1 != y2:
-            inside ^= ((y1 > y) != (y2 > y)) & (x < x1 + (y - y1) / (y2 - y1) * (x2 - x1))
+    ends = np.roll(polygon, -1, axis=0)
+    for first in range(0, len(polygon), _EDGES):  # some edges at once, which bounds the memory
+        (x1, y1), (x2, y2) = (each[first : first + _EDGES].T[:, :, None] for each in (polygon, ends))
+        rise = np.where(y1 == y2, 1.0, y2 - y1)  # a level edge is crossed by no level line
+        crossed = ((y1 > y) != (y2 > y)) & (x < x1 + (y - y1) / rise * (x2 - x1))
+        inside ^= np.logical_xor.reduce(crossed, axis=0)
     return inside
 
 

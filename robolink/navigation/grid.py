@@ -30,7 +30,7 @@ class Grid(NamedTuple):
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def world_to_cell(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[Whole, Whole]:
-        """Return rows and columns of the cells that points lie in, which may be off the grid; NaN lies at -1.
+        """Return rows and columns of the cells that points lie in, which may be off the grid, as NaN does.
 
         Args:
             x: Coordinates in metres.
@@ -60,8 +60,9 @@ class Grid(NamedTuple):
 
 
 def _floor(value: Floats) -> Whole:
-    """Round down; what is beyond all grids becomes `FAR`, NaN -1."""
-    return np.nan_to_num(np.floor(value), nan=-1.0, posinf=FAR, neginf=-FAR).clip(-FAR, FAR).astype(np.int64)
+    """Round down; what is beyond all grids becomes `FAR` or -`FAR`, and NaN -`FAR`."""
+    found: Whole = np.fmin(np.fmax(np.floor(value), -FAR), FAR).astype(np.int64)  # fmax takes the other of NaN and it
+    return found
 
 
 def distances(occupied: npt.NDArray[np.bool_], most_cells: int | None = None) -> npt.NDArray[np.float32]:
@@ -103,12 +104,18 @@ def squared_distances(occupied: npt.NDArray[np.bool_], most_cells: int) -> npt.N
 
 
 def _down_columns(occupied: npt.NDArray[np.bool_], most: int, kind: type[np.integer[Any]]) -> npt.NDArray[Any]:
-    """Return how far up or down the nearest occupied cell of the same column is, at most `most`."""
-    found = np.where(occupied, 0, most).astype(kind)
-    for row in range(1, len(found)):
-        np.minimum(found[row], found[row - 1] + kind(1), out=found[row])
-    for row in range(len(found) - 2, -1, -1):
-        np.minimum(found[row], found[row + 1] + kind(1), out=found[row])
+    """Return how far up or down the nearest occupied cell of the same column is, at most `most`.
+
+    A distance is the sum of some of 1, 2, 4 ...: one look as far as each of them in both directions finds it.
+    """
+    found: npt.NDArray[Any] = np.where(occupied, kind(0), kind(most))
+    step = 1
+    while step <= min(most, len(found) - 1):
+        farther = found + kind(step)
+        found = found.copy()
+        np.minimum(found[step:], farther[:-step], out=found[step:])
+        np.minimum(found[:-step], farther[step:], out=found[:-step])
+        step *= 2
     return found
 
 

@@ -45,7 +45,7 @@ def test_the_centre_of_a_cell_lies_in_it(
 def test_points_that_are_no_numbers_lie_off_the_grid() -> None:
     grid = Grid(np.zeros((4, 6), np.int8), 0.05)
     row, column = grid.world_to_cell([math.nan, math.inf, 1e300], [0.0, -math.inf, -1e300])
-    assert (row.tolist(), column.tolist()) == ([0, -FAR, -FAR], [-1, FAR, FAR])
+    assert (row.tolist(), column.tolist()) == ([0, -FAR, -FAR], [-FAR, FAR, FAR])
     assert not grid.contains(row, column).any()
 
 
