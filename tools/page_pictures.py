@@ -2,8 +2,9 @@
 
 Usage: python tools/page_pictures.py FOLDER [SCENE ...] [--theme dark] [--size 1440x900] [--seconds 12]
 
-The scenes are systems that are launched (wander, track, blobs, signs, fleet), a bag, an exercise, and nothing at all.
-The pictures of the manual are made from the same scenes: `--manual` writes docs/pictures/view.png and exercises.png.
+The scenes are systems that are launched (wander, track, blobs, signs, fleet), a bag, an exercise, the system of the
+learn page localize, and nothing at all. The pictures of the manual are made from the same scenes: `--manual` writes
+view.png, exercises.png and localize.png into a folder, which is docs/pictures.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ sys.path.insert(0, str(ROOT))
 from robolink.learn.folder import start_folder  # noqa: E402
 from tests.support.browser import Browser, chromium  # noqa: E402
 from tests.support.domains import free_domain  # noqa: E402
+from tools.docs_site.pictures import write_files_of  # noqa: E402
 
 THEMES = ("dark", "light")
 SIZES = {"1440x900": (1440, 900), "390x844": (390, 844)}
@@ -52,6 +54,7 @@ def main() -> None:
         if options.manual:
             take(browser, options.folder, "wander", {"view": (1280, 720)}, ("dark",), 30.0, named="{size}")
             take(browser, options.folder, "learn", {"exercises": (1280, 640)}, ("light",), 0.0, named="{size}")
+            take(browser, options.folder, "localize", {"localize": (900, 600)}, ("light",), 3.0, named="{size}")
             return
         sizes = {options.size: SIZES[options.size]} if options.size else SIZES
         themes = (options.theme,) if options.theme else THEMES
@@ -109,12 +112,13 @@ def remember(browser: Browser, remembered: dict[str, object]) -> None:
 
 
 @contextmanager
-def started(folder: Path, *words: str) -> Iterator[str]:
-    """Run a command that serves the page; the address of the page."""
+def started(folder: Path, *words: str, then: tuple[str, ...] = (), after: float = 0.0) -> Iterator[str]:
+    """Run a command that serves the page, and after some seconds another one that ends; the address of the page."""
     with free_domain() as domain:
+        environ = dict(os.environ, ROS_DOMAIN_ID=str(domain), DISPLAY="", BROWSER="true")
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", "robolink", *words],
-            env=dict(os.environ, ROS_DOMAIN_ID=str(domain), DISPLAY="", BROWSER="true"),
+            env=environ,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
@@ -123,7 +127,12 @@ def started(folder: Path, *words: str) -> Iterator[str]:
         )
         try:
             assert process.stdout is not None
-            yield next(word for line in process.stdout for word in line.split() if word.startswith("http://"))
+            address = next(word for line in process.stdout for word in line.split() if word.startswith("http://"))
+            if then:
+                time.sleep(after)
+                command = [sys.executable, "-P", "-m", "robolink", *then]
+                subprocess.run(command, env=environ, cwd=folder, check=True, capture_output=True)
+            yield address
         finally:
             process.terminate()
             process.communicate(timeout=30)
@@ -157,10 +166,23 @@ def learn() -> Iterator[str]:
             yield address
 
 
+@contextmanager
+def localize() -> Iterator[str]:
+    """A scene of a robot that does not know where it is, some seconds after it has begun to guess."""
+    with tempfile.TemporaryDirectory() as scratch:
+        write_files_of("learn/localize.md", Path(scratch))
+        subprocess.run([sys.executable, "draw_map.py"], cwd=scratch, check=True)
+        words = ("launch", "localize.yaml", "--view")
+        guess = ("service", "call", "/reinitialize_global_localization")
+        with started(Path(scratch), *words, then=guess, after=10.0) as address:
+            yield f"{address}#world"
+
+
 SCENES: dict[str, Callable[[], AbstractContextManager[str]]] = {
     **{name: launched(name) for name in ("wander", "track", "blobs", "signs", "fleet")},
     "bag": bag,
     "learn": learn,
+    "localize": localize,
     "empty": lambda: started(ROOT, "view", "--no-browser", "--port", "0"),
 }
 """Scenes by name: each gives the address of a page."""

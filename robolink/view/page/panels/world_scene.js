@@ -10,7 +10,7 @@ const ROBOTS = 5; // between the orders of layers: robots are drawn here
 const SERIES = 8; // colours --c1 to --c8
 const MOST_NAMES = 40, MOST_SMOOTH = 30; // names that are written; robots whose scans and trails are drawn by smooth paths
 const ROLES = { back: "ground", halo: "ground", text: "fg" }, NAMES = ["grid", "dim", "robot", "goal", "scan", "trail", "path", "local", "particles", "camera", "axis-x", "axis-y"];
-const QUIET = /(^|\/)(ground_truth|depth\/camera_info|initialpose)$/; // shown only where it is switched on: what is like another layer
+const QUIET = /(^|\/)(ground_truth|depth\/camera_info|initialpose|global_costmap\/published_footprint)$/; // shown only where it is switched on: what is like another layer
 const LOCAL = /(^|[/_])(local|transformed|optimal)/; // paths of the next seconds, beside the one to the goal
 
 export class Scene {
@@ -369,7 +369,7 @@ export class Scene {
 /** Colour of a cost, of rviz's kind but so that the map is seen through it: nothing at 0, from blue to red, cyan at 99, magenta at 100. */
 function cost(value) {
   if (value === 0 || value > 100) return 0;
-  if (value === 100) return 0xa0ff00ff;
-  if (value === 99) return 0x60ffff00;
-  return ((Math.round(40 + 0.8 * value) << 24) | (Math.round(255 - 2.55 * value) << 16) | Math.round(2.55 * value)) >>> 0;
+  if (value === 100) return 0x80ff00ff;
+  if (value === 99) return 0x48ffff00;
+  return ((Math.round(24 + 0.7 * value) << 24) | (Math.round(255 - 2.55 * value) << 16) | Math.round(2.55 * value)) >>> 0;
 }
