@@ -215,3 +215,12 @@ def test_a_pause_until_a_moment_that_is_over_ends_at_once(system: System) -> Non
     system.node.executor.create_task(wait(system.node))
     system.run(0.1)
     assert paused
+
+
+def test_the_end_of_the_context_closes_what_runs(capfd: pytest.CaptureFixture[str]) -> None:
+    with System(seed=1) as system:
+        goals = Goals(system)
+        goals.send(50)
+        system.run(1.0)
+    assert goals.node.closed == 1
+    assert "Traceback" not in capfd.readouterr().err

@@ -18,6 +18,19 @@ from robolink.task import Future, Task
 from robolink.text.tracebacks import formatted
 
 
+class _Goals(ActionServer):
+    """Action server that says when it is destroyed: its node has ended, or the context."""
+
+    def __init__(self, on_destroy: Callable[[], None], *args: Any, **options: Any) -> None:
+        self._on_destroy = on_destroy
+        super().__init__(*args, **options)
+
+    def destroy(self) -> None:
+        """Destroy the server."""
+        self._on_destroy()
+        super().destroy()
+
+
 class SimpleActionServer:
     """A server of one action that executes one goal at a time, in a coroutine.
 
@@ -76,7 +89,8 @@ class SimpleActionServer:
         self._results: dict[bytes, Future[Any]] = {}
         self._work: Task[Any] | None = None
         self._is_active = False
-        self._server = ActionServer(
+        self._server = _Goals(
+            self._close,
             node,
             action_type,
             action_name,
@@ -110,6 +124,13 @@ class SimpleActionServer:
         """Withdraw the action."""
         self.deactivate()
         self._server.destroy()
+
+    def _close(self) -> None:
+        """Close the coroutine when node or context end: else the collector does so at any time, in other code."""
+        self._is_active = False
+        work, self._work = self._work, None
+        if work is not None:
+            work.cancel()
 
     # For the execution
 
@@ -224,6 +245,8 @@ class SimpleActionServer:
             try:
                 await self._execute()
             except Exception as error:  # noqa: BLE001 - the goal has failed, not the node
+                if not self._node.context.ok():  # its `finally` found nothing left to stop the robot with
+                    return
                 self._logger.error(f"[{self.action_name}] Action server failed:\n{formatted(error)}")
                 self.terminate_all(self._failure(f"{type(error).__name__}: {error}"))
             if self._current is not None:
