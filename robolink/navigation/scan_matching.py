@@ -27,7 +27,7 @@ _NATS = 4.5
 _STEPS = 127
 """Steps into which that fall is divided: the sum of two still fits into a byte."""
 _SCORES = np.append(np.round(255.0 * np.exp(-np.arange(_STEPS) * _NATS / _STEPS)), np.zeros(129)).astype(np.uint8)
-_EXPANSIONS = 4000
+_EXPANSIONS = 1500
 """Blocks that a search divides at most, which bounds its time where every place is alike."""
 _NEIGHBOURS = 8
 """Points before and after one that make its surface, if they are near."""
@@ -208,19 +208,20 @@ def _best(
         bounds[i, j] = maxima.take(cells + np.int32(up * side + right)).sum(axis=1, dtype=np.int64)
     promising = np.flatnonzero(bounds.ravel() >= least)
     rows, columns, angles = np.unravel_index(promising, bounds.shape)
-    numbers = (-bounds.ravel()[promising], np.zeros_like(rows), angles, shifts[rows], shifts[columns])
+    last = len(blocks) - 1
+    numbers = (-bounds.ravel()[promising], np.full_like(rows, last), angles, shifts[rows], shifts[columns])
     waiting = list(zip(*(each.tolist() for each in numbers), strict=True))
     heapq.heapify(waiting)
     for _ in range(_EXPANSIONS):
         if not waiting:
             return None
-        bound, level, angle, up, right = heapq.heappop(waiting)
-        if level == len(blocks) - 1:
+        bound, left, angle, up, right = heapq.heappop(waiting)  # of those that are alike, the smallest block
+        if not left:
             return -bound, angle, up, right
-        for child in _divided(field, cells[angle], blocks[level], blocks[level + 1], (up, right), reach):
+        for child in _divided(field, cells[angle], blocks[last - left], blocks[last - left + 1], (up, right), reach):
             if child[0] >= least:
-                heapq.heappush(waiting, (-child[0], level + 1, angle, *child[1:]))
-    leaves = [each for each in waiting if each[1] == len(blocks) - 1]
+                heapq.heappush(waiting, (-child[0], left - 1, angle, *child[1:]))
+    leaves = [each for each in waiting if not each[1]]
     return _shift(min(leaves)) if leaves else None
 
 

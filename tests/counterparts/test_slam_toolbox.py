@@ -31,6 +31,7 @@ from robolink.interfaces.std_msgs.msg import String
 from robolink.interfaces.std_srvs.srv import Empty
 from robolink.interfaces.tf2_msgs.msg import TFMessage
 from robolink.interfaces.visualization_msgs.msg import Marker, MarkerArray
+from robolink.launch.lookup import find
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
 from robolink.tf2 import TransformBroadcaster
@@ -504,3 +505,16 @@ def test_parameters_that_make_no_sense_are_replaced(system: System, robot: Robot
     robot.look()
     assert node.mapper.options.resolution == 0.05
     assert len(node.mapper.keyframes) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["online_async", "online_sync", "localization"])
+def test_the_package_s_launch_files_activate_a_node(system: System, robot: Robot, name: str) -> None:
+    file = find(("slam_toolbox", f"{name}_launch.py"))
+    system.launch(str(file), arguments={"use_sim_time": "false"})
+    if name == "localization":
+        system.expect_log("map.posegraph: No such file or directory")
+    system.expect_log("Activating")
+    robot.look()
+    if name != "localization":
+        assert system.expect("/map").header.frame_id == "map"

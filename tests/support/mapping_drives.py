@@ -12,7 +12,7 @@ import yaml
 
 from robolink.geometry.plane import Pose, seen_from
 from robolink.sim import World, load_world
-from robolink.sim.description import WorldDescription
+from robolink.sim.description import Obstacle, WorldDescription
 from robolink.sim.sensing.scene import fixed_circles, fixed_segments
 
 Floats = npt.NDArray[np.float64]
@@ -32,7 +32,11 @@ ERRORS = {"scale": {"v": 1.03, "w": 0.97}, "drift": 0.01, "noise": {"v": 0.05, "
 
 
 class Drive(NamedTuple):
-    """What was measured on a drive, a row for each scan; `segments` and `circles` are the walls of the world."""
+    """What was measured on a drive, a row for each scan.
+
+    `segments` and `circles` are the walls and fixed obstacles of the world, `moved` where things were that move or can
+    be pushed: rows of x, y and a radius around all of it, in metres.
+    """
 
     truth: Floats
     odometry: Floats
@@ -40,6 +44,7 @@ class Drive(NamedTuple):
     angles: Floats
     segments: Floats
     circles: Floats
+    moved: Floats
 
 
 def described(name: str, *, movers: bool = True) -> dict[str, Any]:
@@ -67,6 +72,8 @@ def driven(folder: Path, name: str, seconds: float, seed: int = 0, *, movers: bo
     robot, between = world.robots["robot"], round(1e9 / rate / world_step(description))
     angles: Any = np.empty(0)
     truth, odometry, scans = [], [], []
+    sizes = [_radius(each) for each in description.obstacles]
+    moved = set()
     for step in range(round(seconds * 1e9 / world_step(description))):
         if step % between == 0:
             scan = robot.scan()
@@ -74,10 +81,20 @@ def driven(folder: Path, name: str, seconds: float, seed: int = 0, *, movers: bo
             truth.append(Pose(robot.pose.x, robot.pose.y, robot.pose.theta))
             odometry.append((robot.odometry.x, robot.odometry.y, robot.odometry.theta))
             scans.append(np.array(scan.ranges))
+            places = zip(world.obstacle_poses(), sizes, strict=True)
+            moved |= {(round(place.x, 1), round(place.y, 1), size) for place, size in places if size}
             robot.command(*driver.speeds(truth[-1], scans[-1], angles))
         world.step()
     walls = fixed_segments(description), fixed_circles(description)
-    return Drive(np.array(truth), np.array(odometry), np.array(scans), angles, *walls)
+    things = np.array(sorted(moved), np.float64).reshape(-1, 3)
+    return Drive(np.array(truth), np.array(odometry), np.array(scans), angles, *walls, things)
+
+
+def _radius(obstacle: Obstacle) -> float:
+    """Return the radius in metres around a thing that moves or can be pushed; 0 for one that stands."""
+    if obstacle.path is None and obstacle.mass is None:
+        return 0.0
+    return obstacle.circle or 0.5 * math.hypot(*(obstacle.box or (1.0, 1.0)))
 
 
 def tour(name: str) -> list[tuple[float, float]]:
@@ -120,3 +137,11 @@ def wall_distances(drive: Drive, points: Floats) -> Floats:
     for x, y, radius in drive.circles.tolist():
         np.minimum(found, np.abs(np.hypot(*(points - (x, y)).T) - radius), out=found)
     return found
+
+
+def standing(drive: Drive, points: Floats) -> Floats:
+    """Return those of the points at which nothing was that moves or can be pushed."""
+    near = np.zeros(len(points), np.bool_)
+    for x, y, radius in drive.moved.tolist():
+        near |= np.hypot(*(points - (x, y)).T) < radius + 0.2
+    return points[~near]
