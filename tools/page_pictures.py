@@ -2,9 +2,9 @@
 
 Usage: python tools/page_pictures.py FOLDER [SCENE ...] [--theme dark] [--size 1440x900] [--seconds 12]
 
-The scenes are systems that are launched (wander, track, blobs, signs, fleet), a bag, an exercise, the system of the
-learn page localize, and nothing at all. The pictures of the manual are made from the same scenes: `--manual` writes
-view.png, exercises.png and localize.png into a folder, which is docs/pictures.
+The scenes are systems that are launched (wander, track, blobs, signs, fleet, navigate), a bag, an exercise, the system
+of the learn page localize, and nothing at all. The pictures of the manual are made from the same scenes: `--manual`
+writes view.png, exercises.png, localize.png and go_there.png into a folder, which is docs/pictures.
 """
 
 from __future__ import annotations
@@ -35,6 +35,10 @@ PHONE = 700
 
 FILM = "robolink.layout?.panel('learn')?.film"
 
+GOAL = """(() => { const world = robolink.layout.panel('world');
+world._use('goal'); world.scene.wanted = { x: 6.0, y: 1.5, yaw: -1.57 }; world._send(); })()"""
+"""JavaScript that sends a robot of the office into a room, as a click does."""
+
 
 def main() -> None:
     """Take the pictures that the command line asks for."""
@@ -55,6 +59,7 @@ def main() -> None:
             take(browser, options.folder, "wander", {"view": (1280, 720)}, ("dark",), 30.0, named="{size}")
             take(browser, options.folder, "learn", {"exercises": (1280, 640)}, ("light",), 0.0, named="{size}")
             take(browser, options.folder, "localize", {"localize": (900, 600)}, ("light",), 3.0, named="{size}")
+            take(browser, options.folder, "navigate", {"go_there": (900, 600)}, ("light",), 8.0, named="{size}")
             return
         sizes = {options.size: SIZES[options.size]} if options.size else SIZES
         themes = (options.theme,) if options.theme else THEMES
@@ -91,6 +96,8 @@ def take(
                 browser.wait("globalThis.robolink?.connection.isOpen && robolink.layout?.isReady", 60.0)
                 if scene == "learn":
                     browser.wait(f"{FILM}?.end && {FILM}.at == {FILM}.end && !{FILM}.changed", 60.0)
+                if scene == "navigate":
+                    browser.js(GOAL)
                 time.sleep(seconds)
                 file = browser.screenshot(folder / f"{named.format(scene=scene, size=size, theme=theme)}.png")
                 sys.stdout.write(f"{file} {' '.join(browser.problems[:3])}\n")
@@ -167,6 +174,14 @@ def learn() -> Iterator[str]:
 
 
 @contextmanager
+def navigate() -> Iterator[str]:
+    """A scene of a robot that is ready to be sent through an office."""
+    ready = ("lifecycle", "get", "/waypoint_follower")
+    with started(ROOT, "launch", "navigate", "--view", then=ready, after=12.0) as address:
+        yield f"{address}#world"
+
+
+@contextmanager
 def localize() -> Iterator[str]:
     """A scene of a robot that does not know where it is, some seconds after it has begun to guess."""
     with tempfile.TemporaryDirectory() as scratch:
@@ -180,6 +195,7 @@ def localize() -> Iterator[str]:
 
 SCENES: dict[str, Callable[[], AbstractContextManager[str]]] = {
     **{name: launched(name) for name in ("wander", "track", "blobs", "signs", "fleet")},
+    "navigate": navigate,
     "bag": bag,
     "learn": learn,
     "localize": localize,
