@@ -21,6 +21,12 @@ from robolink.navigation.rollouts import Command
 
 _STEP = 0.05
 """Seconds between two looks for a collision ahead, at most."""
+_FORESIGHT = np.arange(0.0, 2.6, 0.25)
+"""Times in seconds for which it is predicted where moving obstacles will be."""
+_MARGIN, _SPREAD = 0.08, 0.06
+"""Distance in metres from a moving obstacle that is kept, and by how much it grows in a second of foresight."""
+BACK = 0.25
+"""Speed in m/s of backing away from a moving obstacle."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,7 @@ class Options:
     cost_scaling_gain: float = 1.0
     inflation_cost_scaling_factor: float = 3.0
     stateful: bool = True
+    predict_movers: bool = True
 
     def limited(self, limit: float, *, percentage: bool) -> Options:
         """Return them with a lower speed; `limit` in m/s, or in percent of it with `percentage`, 0.0 for none."""
@@ -100,9 +107,31 @@ class Pursuit:
             curvature = 2.0 * y / distance**2 if distance > 0.03 else 0.0
             v = self._regulated(curvature, pose, path, around)
             w = v * curvature
+        if options.predict_movers and around.movers:
+            v, w = self._yielding(pose, v, w, path, around)
         trajectory = self._ahead(pose, v, w, distance)
         is_valid = not (options.use_collision_detection and _collides(trajectory, pose, around))
         return Command(v, w, True, trajectory) if is_valid else Command(0.0, 0.0, False, trajectory)
+
+    def _yielding(self, pose: Pose, v: float, w: float, path: LocalPath, around: Surroundings) -> tuple[float, float]:
+        """Return the speeds nearest to those that were found at which nothing that moves comes near.
+
+        The robot slows down on its arc, stands, or backs away; if all of it is too near, it does what is least so.
+        """
+        curvature = w / v if v > 0.0 else 0.0
+        tried = [(share * v, share * v * curvature) for share in (1.0, 0.6, 0.3, 0.0)] if v > 0.0 else [(v, w)]
+        tried.append((-BACK, 0.0))
+        found, widest = (0.0, 0.0), -math.inf
+        for speeds in tried:
+            ahead = _driven(pose, *speeds, _FORESIGHT)
+            if speeds[0] < 0.0 and _collides(ahead, pose, around):
+                continue
+            room = _room(ahead, around)
+            if room >= 0.0:
+                return speeds
+            if room > widest + 0.02:
+                found, widest = speeds, room
+        return found
 
     def _carrot(self, pose: Pose, speed: tuple[float, float], path: LocalPath) -> tuple[float, float]:
         """Return the point of the path at the lookahead distance, in the robot's frame."""
@@ -157,13 +186,28 @@ class Pursuit:
         seconds = self.options.max_allowed_time_to_collision_up_to_carrot
         if v > 0.0:
             seconds = min(seconds, distance / v)
-        times = np.arange(max(math.ceil(seconds / _STEP), 1) + 1) * _STEP
-        theta = pose.theta + w * times
-        if abs(w) < 1e-6:
-            return np.stack((pose.x + v * times * np.cos(theta), pose.y + v * times * np.sin(theta), theta), axis=1)
-        x = pose.x + v / w * (np.sin(theta) - math.sin(pose.theta))
-        y = pose.y - v / w * (np.cos(theta) - math.cos(pose.theta))
-        return np.stack((x, y, theta), axis=1)
+        times: Floats = np.arange(max(math.ceil(seconds / _STEP), 1) + 1, dtype=np.float64) * _STEP
+        return _driven(pose, v, w, times)
+
+
+def _driven(pose: Pose, v: float, w: float, times: Floats) -> Floats:
+    """Return the poses of a robot after some times, in seconds, at constant speeds: rows of x, y and theta."""
+    theta = pose.theta + w * times
+    if abs(w) < 1e-6:
+        return np.stack((pose.x + v * times * np.cos(theta), pose.y + v * times * np.sin(theta), theta), axis=1)
+    x = pose.x + v / w * (np.sin(theta) - math.sin(pose.theta))
+    y = pose.y - v / w * (np.cos(theta) - math.cos(pose.theta))
+    return np.stack((x, y, theta), axis=1)
+
+
+def _room(poses: Floats, around: Surroundings) -> float:
+    """Return the least distance in metres that is left to what moves, at the poses after `_FORESIGHT`."""
+    found = math.inf
+    for each in around.movers:
+        x, y = each.x + each.vx * _FORESIGHT, each.y + each.vy * _FORESIGHT
+        far = np.sqrt((poses[:, 0] - x) ** 2 + (poses[:, 1] - y) ** 2) - each.radius
+        found = min(found, float((far - _MARGIN - _SPREAD * _FORESIGHT).min()))
+    return found
 
 
 def _on_circle(inner: tuple[float, float], outer: tuple[float, float], radius: float) -> tuple[float, float]:

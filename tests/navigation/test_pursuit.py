@@ -12,7 +12,8 @@ from robolink.navigation.critics import Surroundings
 from robolink.navigation.footprint import INSCRIBED, LETHAL, cover, parse_footprint
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.local_path import LocalPath, ahead, lengths, nearest
-from robolink.navigation.pursuit import Options, Pursuit
+from robolink.navigation.movers import Mover
+from robolink.navigation.pursuit import BACK, Options, Pursuit
 
 X = np.linspace(0.0, 4.0, 81)
 STRAIGHT = np.column_stack((X, np.zeros(81), np.zeros(81)))
@@ -110,3 +111,39 @@ def test_speed_limits() -> None:
     assert Options().limited(50.0, percentage=True).desired_linear_vel == 0.25
     assert Options().limited(2.0, percentage=False).desired_linear_vel == 0.5
     assert Options().limited(0.0, percentage=False) == Options()
+
+
+def met(mover: Mover, control: Pursuit | None = None, seconds: float = 8.0) -> tuple[float, float, float]:
+    """Drive along the straight path past a mover: the least distance left to it, how far it comes, the lowest speed."""
+    control = control or pursuit()
+    x = y = theta = v = w = place = 0.0
+    least, slowest, along = math.inf, 0.0, lengths(STRAIGHT)
+    for step in range(round(seconds / 0.05)):
+        now = mover.later(step * 0.05)
+        place = nearest(STRAIGHT, along, x, y, place, 1.5)
+        surroundings = around()._replace(movers=[now])
+        v, w, _, _ = control.step(Pose(x, y, theta), (v, w), part(STRAIGHT, place), surroundings, 0.1)
+        theta += w * 0.05
+        x, y = x + v * 0.05 * math.cos(theta), y + v * 0.05 * math.sin(theta)
+        least, slowest = min(least, math.hypot(x - now.x, y - now.y) - now.radius), min(slowest, v)
+    return least, x, slowest
+
+
+@pytest.mark.parametrize(
+    "mover",
+    [
+        Mover(1.5, -1.2, 0.0, 0.4, 0.37),  # crosses from the right
+        Mover(1.2, 0.9, 0.0, -0.3, 0.37),  # crosses from the left
+        Mover(1.4, 0.9, -0.2, -0.35, 0.37),  # comes nearer while it crosses
+    ],
+)
+def test_it_lets_what_crosses_its_way_pass_and_goes_on(mover: Mover) -> None:
+    least, way, _ = met(mover)
+    assert least > 0.0
+    assert way > 1.5
+    assert met(mover, pursuit(predict_movers=False))[0] < 0.0
+
+
+def test_it_backs_away_from_what_comes_towards_it() -> None:
+    least, _, slowest = met(Mover(1.5, 0.0, -0.2, 0.0, 0.37), seconds=6.0)
+    assert (slowest, least > 0.0) == (-BACK, True)

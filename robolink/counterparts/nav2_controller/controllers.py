@@ -70,6 +70,7 @@ WORDS = {
     "cost_scaling_dist": "distance to an obstacle in metres from which on it slows down",
     "cost_scaling_gain": "factor on the speed near obstacles",
     "inflation_cost_scaling_factor": "cost_scaling_factor of the local costmap's inflation layer",
+    "predict_movers": "slow down, stand or back away where moving obstacles will be",
     "stateful": "a goal that was reached once stays reached, while the robot turns",
 }
 """Descriptions of parameters."""
@@ -174,10 +175,9 @@ class RolloutsController:
 class PursuitController:
     """Regulated pure pursuit."""
 
-    follows_movers = False
-
     def __init__(self, node: Node, name: str, period: float, inscribed: float, reach: float) -> None:
         self._options = read_options(node, name, pursuit.Options, WORDS)
+        self.follows_movers = self._options.predict_movers
         self._pursuit = pursuit.Pursuit(self._options, inscribed=inscribed, period=period)
         words = "metres of the path ahead that are looked at"
         self.prune_distance = _declared(node, f"{name}.max_robot_pose_search_dist", reach, words)
