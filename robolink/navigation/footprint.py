@@ -20,6 +20,8 @@ CORNERS = 16
 _EDGES = 32
 """Edges of a polygon that points are compared with at once."""
 MOST_CORNERS = 1000
+MOST_ROWS = 500
+"""Most rows of points that cover a footprint: a larger one is covered less densely."""
 FARTHEST = 100.0
 """Largest distance of a corner from the origin, in metres."""
 
@@ -111,11 +113,12 @@ def cover(polygon: Floats, spacing: float) -> Floats:
     Returns:
         Array of shape (points, 2).
     """
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    spacing = max(spacing, float((high - low).max()) / MOST_ROWS)
     edges = []
     for start, end in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         steps = max(1, math.ceil(math.dist(start, end) / spacing))
         edges.append(start + (end - start) * (np.arange(steps) / steps)[:, None])
-    low, high = polygon.min(axis=0), polygon.max(axis=0)
     xs, ys = (np.arange(low[axis], high[axis] + spacing, spacing) for axis in (0, 1))
     inner = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
     return np.concatenate([*edges, inner[contains(polygon, inner)]])

@@ -144,6 +144,10 @@ def test_services_clear_what_was_seen(system: System) -> None:
     system.call(ClearCostmapAroundRobot, "/clear_around_costmap", ClearCostmapAroundRobot.Request(reset_distance=1.5))
     assert seen() == (False, True)
     saw()
+    system.call(
+        ClearCostmapAroundRobot, "/clear_around_costmap", ClearCostmapAroundRobot.Request(reset_distance=math.nan)
+    )
+    system.expect_log("expected a reset_distance of 0 or more metres, got nan")
     request = ClearCostmapAroundPose.Request(reset_distance=0.5)
     request.pose.header.frame_id = "base_link"
     request.pose.pose.position.y = 1.0

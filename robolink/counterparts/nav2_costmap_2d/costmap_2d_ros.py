@@ -21,7 +21,7 @@ from robolink.counterparts.nav2_costmap_2d.settings import (
     layers_of,
 )
 from robolink.counterparts.nav2_util.parameters import keep_unknown
-from robolink.counterparts.nav2_util.robot_pose import in_frame
+from robolink.counterparts.nav2_util.robot_pose import fault, in_frame
 from robolink.counterparts.program import spin_program
 from robolink.exceptions import ParameterException
 from robolink.geometry.plane import Pose, is_finite, pose_of
@@ -44,7 +44,7 @@ from robolink.navigation.grid import Floats, Grid
 from robolink.node import Node
 from robolink.parameter import Parameter
 from robolink.tf2.buffer import Buffer
-from robolink.tf2.exceptions import TransformException
+from robolink.tf2.exceptions import InvalidArgumentException, TransformException
 from robolink.tf2.transform_listener import TransformListener
 from robolink.time import Time
 
@@ -124,7 +124,13 @@ class Costmap2DROS(LifecycleNode):
         return pose if is_finite(pose) else None
 
     def transformed(self, pose: PoseStamped) -> Pose:
-        """Return a pose in the costmap's frame; one without a frame is in it. Raises TransformException."""
+        """Return a pose in the costmap's frame; one without a frame is in it.
+
+        Raises:
+            TransformException: if no transform is known; InvalidArgumentException for a pose that is none.
+        """
+        if mistake := fault(pose.pose):
+            raise InvalidArgumentException(mistake)
         return pose_of(in_frame(self.tf_buffer, pose, self.global_frame).pose)
 
     def is_current(self) -> bool:
@@ -158,6 +164,9 @@ class Costmap2DROS(LifecycleNode):
             side: Length of its sides in metres.
             inside: True clears the square, False what is around it.
         """
+        if not side >= 0.0:
+            self.get_logger().error(f"Cannot clear map: expected a reset_distance of 0 or more metres, got {side:g}")
+            return
         square = self._costmap.square(x, y, side)
         self._costmap.clear(~square if inside else square)
         self._renew()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from robolink.counterparts.nav2_costmap_2d.sensors import moved, points_of
-from robolink.counterparts.nav2_costmap_2d.settings import Parameters, SettingsError, declare_source
+from robolink.counterparts.nav2_costmap_2d.settings import FARTHEST, Parameters, SettingsError, declare_source
 from robolink.geometry.plane import Pose, pose_of
 from robolink.interfaces.geometry_msgs.msg import Transform
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
@@ -28,6 +27,8 @@ if TYPE_CHECKING:
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SENSOR_DEPTH = 50
 """Messages of a sensor that wait for their transforms, as in Nav2."""
+FINEST, COARSEST = 1e-4, 1e3
+"""Bounds of the side of a map's cells in metres, as map_server has them here."""
 PATIENCE = 5.0
 """Seconds between two warnings of the same matter."""
 
@@ -71,7 +72,7 @@ class MapInput:
         fault = ""
         if not cells.size or cells.size != info.width * info.height:
             fault = f"{info.width} x {info.height} cells, and data has {cells.size}"
-        elif not (math.isfinite(info.resolution) and info.resolution > 0 and all(map(math.isfinite, origin))):
+        elif not (FINEST <= info.resolution <= COARSEST and all(abs(each) <= FARTHEST for each in origin)):
             fault = f"resolution {info.resolution:g}, origin ({origin.x:g}, {origin.y:g}, {origin.theta:g})"
         if fault:
             self._node.get_logger().error(f"Received map message is malformed. Rejecting: {fault}")
