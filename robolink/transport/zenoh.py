@@ -19,7 +19,7 @@ from robolink.exceptions import OverwrittenError
 from robolink.networks.settings import SOUGHT_EVERY
 from robolink.qos import DurabilityPolicy, QoSProfile, resolved
 from robolink.system import clocks, heap
-from robolink.transport import lifetime, zenoh_handles
+from robolink.transport import lifetime, zenoh_handles, zenoh_readers
 from robolink.transport import zenoh_declare as declare
 from robolink.transport import zenoh_handles as handles
 from robolink.transport.base import Handle, Query, Sample, Sink, Transport, make_sample, refuse_giant
@@ -74,7 +74,8 @@ class ZenohTransport(Transport):
         self._has_left = False
         with lifetime.inside:
             before = clocks.time_of_day()
-            joined = join(domain, network, dict(os.environ if environ is None else environ), secure, named)
+            with zenoh_readers.enough():
+                joined = join(domain, network, dict(os.environ if environ is None else environ), secure, named)
             self.session, self._claim = joined.session, joined.claim
             self.leaves_machine, self.thinned = joined.leaves_machine, joined.thinned
             self._may_group, self._groups = joined.has_own_settings, Groups()

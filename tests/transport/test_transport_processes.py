@@ -21,6 +21,7 @@ from robolink.networks.settings import most_pending
 from robolink.transport import network
 from robolink.transport.zenoh import ZenohTransport
 from robolink.transport.zenoh_declare import is_matching, quietly
+from robolink.transport.zenoh_readers import READERS
 from tests.support.domains import free_domain
 from tests.support.transports import (
     ADD,
@@ -380,3 +381,29 @@ def test_keys_that_zenoh_refuses_are_said_in_one_line(zenoh_net: Network) -> Non
         session.advertise("a//b", PLAIN)
     assert str(caught.value).startswith("a//b: ")
     assert ".rs" not in str(caught.value)
+
+
+THREADS = """
+import subprocess, time
+other, deadline, readers = ZenohTransport(int(sys.argv[1]), environ=dict()), time.monotonic() + 10, 0
+while readers != int(sys.argv[2]) and time.monotonic() < deadline:  # each names itself when it begins
+    time.sleep(0.01)
+    names = [open(f"/proc/self/task/{each}/comm").read() for each in os.listdir("/proc/self/task")]
+    readers = sum(name.startswith("rx-") for name in names)
+print(readers, os.environ.get("ZENOH_RUNTIME"), flush=True)
+subprocess.run(["printenv", "ZENOH_RUNTIME"])
+"""
+"""Program that prints how many threads read its links, and what it sees and hands down of Zenoh's variable."""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux shows the names of threads")
+@pytest.mark.parametrize("chosen", [None, "(rx:(worker_threads:5))"], ids=["by itself", "as the user says"])
+def test_enough_threads_read_and_no_other_program_is_told(
+    domain: int, chosen: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ZENOH_RUNTIME", raising=False)
+    if chosen:
+        monkeypatch.setenv("ZENOH_RUNTIME", chosen)
+    readers = 5 if chosen else READERS
+    done = run(domain, THREADS, str(readers))
+    assert done.stdout == f"{readers} {chosen}\n" + (f"{chosen}\n" if chosen else ""), done.stderr
