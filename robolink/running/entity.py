@@ -179,9 +179,9 @@ class Receiver(Entity):
         self._to_inbox: functools.partial[Any]
         """Sink that leads to the inbox, of what arrives or of notices; another inbox can take it over."""
         if drops_in_c:
-            self.mailbox = kept = KeepLast(depth, self, parking)
-            self.deliver = self.sink = kept.entrance
-            self._to_inbox = kept.sink
+            self.mailbox = last = KeepLast(depth, self, parking)
+            self.deliver = self.sink = last.entrance
+            self._to_inbox = last.sink
         else:
             self.mailbox = Delivered(depth, self, prepare)
             self.deliver = self.mailbox.put
