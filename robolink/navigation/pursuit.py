@@ -25,6 +25,8 @@ _FORESIGHT = np.arange(0.0, 2.6, 0.25)
 """Times in seconds for which it is predicted where moving obstacles will be."""
 _MARGIN, _SPREAD = 0.08, 0.06
 """Distance in metres from a moving obstacle that is kept, and by how much it grows in a second of foresight."""
+_ESCAPE = 6
+"""Of these times, how many must be free of other obstacles on a way out."""
 BACK = 0.25
 """Speed in m/s of backing away from a moving obstacle."""
 
@@ -116,15 +118,17 @@ class Pursuit:
     def _yielding(self, pose: Pose, v: float, w: float, path: LocalPath, around: Surroundings) -> tuple[float, float]:
         """Return the speeds nearest to those that were found at which nothing that moves comes near.
 
-        The robot slows down on its arc, stands, or backs away; if all of it is too near, it does what is least so.
+        The robot slows down on its arc or stands, or gets out of the way; if all of it is too near, it does what is
+        least so.
         """
         curvature = w / v if v > 0.0 else 0.0
         tried = [(share * v, share * v * curvature) for share in (1.0, 0.6, 0.3, 0.0)] if v > 0.0 else [(v, w)]
-        tried.append((-BACK, 0.0))
+        on_arc, fast = len(tried), self.options.desired_linear_vel
+        tried += [(-BACK, 0.0), (fast, 0.0), (-BACK, 0.8), (-BACK, -0.8), (fast, 1.2), (fast, -1.2)]
         found, widest = (0.0, 0.0), -math.inf
-        for speeds in tried:
+        for number, speeds in enumerate(tried):
             ahead = _driven(pose, *speeds, _FORESIGHT)
-            if speeds[0] < 0.0 and _collides(ahead, pose, around):
+            if number >= on_arc and _collides(ahead[:_ESCAPE], pose, around):
                 continue
             room = _room(ahead, around)
             if room >= 0.0:

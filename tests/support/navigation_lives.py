@@ -112,7 +112,7 @@ def lived(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS, c
     file, true_chart = world.write(folder)
     with System(seed=world.seed % 2**31) as system:
         navigation = Navigation(system, file, chart or true_chart, world.start, parameters)
-        system.run(1.0)
+        system.run(2.0)  # costmaps have seen what is around
         robot = system.robot()
         before, began, cpu = robot.contacts, system.time, time.process_time()
         handle = navigation.send(world.goal)
