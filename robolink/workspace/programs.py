@@ -106,7 +106,7 @@ def program(package: str, name: str) -> NodeSource | None:
 def component(plugin: str) -> NodeSource | None:
     """Return the source of the class that does the same as the component `plugin`; None if there is none.
 
-    >>> component("nav2_amcl::AmclNode") is None
+    >>> component("nav2_smoother::SmootherServer") is None
     True
     """
     found = _source(plugin)

@@ -11,6 +11,7 @@ import pytest
 
 from robolink.action import ActionClient
 from robolink.interfaces.action_msgs.msg import GoalStatus
+from robolink.interfaces.composition_interfaces.srv import LoadNode, UnloadNode
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, TransformStamped
 from robolink.interfaces.lifecycle_msgs.msg import Transition
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState, GetState
@@ -289,3 +290,16 @@ def test_transitions_are_those_of_the_costmap(system: System, tmp_path: File) ->
     status, _ = outcome(system, ComputePathToPose.Goal(goal=pose(4.0, 1.0)))
     assert status == GoalStatus.STATUS_SUCCEEDED
     assert system.nodes.count("/global_costmap/global_costmap") == 1
+
+
+def test_a_container_loads_the_server_with_its_costmap(system: System) -> None:
+    system.start("rclcpp_components component_container")
+    request = LoadNode.Request(package_name="nav2_planner", plugin_name="nav2_planner::PlannerServer")
+    answer = system.call(LoadNode, "/ComponentManager/_container/load_node", request)
+    assert (answer.error_message, answer.full_node_name) == ("", "/planner_server")
+    assert change(system, Transition.TRANSITION_CONFIGURE)
+    assert system.parameter("/global_costmap/global_costmap", "resolution") == 0.1
+    unload = UnloadNode.Request(unique_id=answer.unique_id)
+    assert system.call(UnloadNode, "/ComponentManager/_container/unload_node", unload).success
+    system.run(0.1)
+    assert system.nodes == ["/ComponentManager"]

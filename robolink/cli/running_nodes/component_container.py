@@ -15,7 +15,7 @@ from robolink.interfaces.composition_interfaces.srv import ListNodes, LoadNode, 
 from robolink.launch.shared_process import Member
 from robolink.node import Node
 from robolink.parameter import Parameter
-from robolink.workspace import NodeLoadError, NodeSource, find_executable, own_process_needed
+from robolink.workspace import NodeLoadError, NodeSource, component, find_executable, own_process_needed
 
 if TYPE_CHECKING:
     from robolink.context import Context
@@ -120,6 +120,8 @@ def source_of(package: str, plugin: str) -> NodeSource:
         NotFoundError: if there is no such executable.
         NodeLoadError: if it is not a Node class.
     """
+    if (known := component(plugin)) is not None:
+        return known
     try:
         source = find_executable(package, plugin)
     except NotFoundError:
