@@ -72,11 +72,18 @@ def test_nodes_are_loaded_named_and_taken_out(system: System) -> None:
     assert (again.success, again.error_message) == (False, "no node has the number 1")
 
 
+def test_a_component_is_found_by_its_own_name(system: System) -> None:
+    answer = load(
+        system, "composition", "composition::Talker"
+    )  # a package of components, which has no executables here
+    assert (answer.error_message, answer.full_node_name) == ("", "/talker")
+
+
 @pytest.mark.parametrize(
     ("package", "plugin", "reason"),
     [
         ("demo_nodes_py", "tlker", "did you mean 'talker'?"),
-        ("composition", "composition::Talker", "no package named 'composition'"),
+        ("compositor", "compositor::Talker", "no package named 'compositor'"),
         pytest.param(
             *("rviz2", "rviz2", "shares no process: ros_programs.py is run by a function (rviz2)"),
             marks=pytest.mark.annex("view"),
