@@ -161,9 +161,10 @@ def _in_cells(costs: Grid, pose: Pose) -> tuple[float, float]:
 def _poses(costs: Grid, points: Floats, start: Pose, goal: Pose, options: PlanOptions) -> Floats:
     """Return points in cells as poses, with headings along the path."""
     x, y = costs.cell_to_world(points[:, 1] - 0.5, points[:, 0] - 0.5)
-    headings = np.arctan2(np.diff(y), np.diff(x))
-    moves = (np.diff(y) != 0) | (np.diff(x) != 0)
-    if not moves.any():
+    up, right = np.diff(y), np.diff(x)
+    # Not numpy's arctan2, whose last bits are those of the processor.
+    headings = [math.atan2(*each) for each in zip(up.tolist(), right.tolist(), strict=True)]
+    if not (up.any() or right.any()):
         return np.array([(goal.x, goal.y, start.theta if options.final_approach else goal.theta)])
     last = headings[-1] if options.final_approach else goal.theta
     return np.column_stack((x, y, np.append(headings, last)))

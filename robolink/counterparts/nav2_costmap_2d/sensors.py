@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from robolink.geometry.trigonometry import cos_and_sin
 from robolink.interfaces.geometry_msgs.msg import Transform
 from robolink.interfaces.sensor_msgs.msg import LaserScan, PointCloud2
 from robolink.navigation.grid import Floats
@@ -15,6 +16,8 @@ from robolink.sensor_msgs_py.point_cloud2 import read_points
 
 MOST_BEAMS = 100_000
 """Most beams of a scan: one with more is refused, since its angles would be computed for nothing."""
+MOST_ANGLE = 1000.0
+"""Largest angle of a beam in radians."""
 WITHIN = 0.0001
 """Metres by which a beam that met nothing ends before the sensor's range, as in Nav2."""
 
@@ -43,7 +46,8 @@ def points_of(message: LaserScan | PointCloud2, *, inf_is_valid: bool) -> tuple[
 def _points_of_scan(scan: LaserScan, inf_is_valid: bool) -> tuple[Floats, Floats]:
     count = len(scan.ranges)
     bounds = scan.angle_min, scan.angle_increment, scan.range_min, scan.range_max
-    if count > MOST_BEAMS or not all(map(math.isfinite, bounds)):
+    widest = max(abs(scan.angle_min), abs(scan.angle_min + count * scan.angle_increment))
+    if count > MOST_BEAMS or not all(map(math.isfinite, bounds)) or widest > MOST_ANGLE:
         raise ValueError(f"{count} beams, and angle_min, angle_increment, range_min and range_max are {bounds}")
     ranges = np.asarray(scan.ranges, np.float64)
     if inf_is_valid:
@@ -56,8 +60,7 @@ def _points_of_scan(scan: LaserScan, inf_is_valid: bool) -> tuple[Floats, Floats
 
 @lru_cache(maxsize=16)
 def _directions(first: float, increment: float, count: int) -> tuple[Floats, Floats]:
-    angles = first + increment * np.arange(count)
-    return np.cos(angles), np.sin(angles)
+    return cos_and_sin(first + increment * np.arange(count, dtype=np.float64))  # the same bits on every machine
 
 
 def moved(transform: Transform, x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
