@@ -17,6 +17,7 @@ const SHOWN_BEAMS = 60; // of a scan, as lines
 const SIGHT = 1.2; // metres that a camera's view is drawn
 const REACHED = 0.35; // metres from a goal at which it is reached
 const MOST_PARTICLES = 5000;
+const LOCAL = /(^|[/_])(local|transformed|optimal)/; // paths of the next seconds, which lie above the one to the goal
 const FAINTEST = 0.25, STEPS = 4; // opacity of a particle without weight; steps of weight that are told apart
 
 /** Axes of a pose seen from above: [x, y, xx, xy, yx, yy]. */
@@ -246,6 +247,8 @@ class Odometry extends Layer {
 
 /** Layer of points that are joined, filled or marked, in the frame of the header. */
 class Outline extends Layer {
+  get above() { return LOCAL.test(this.topic.name) ? 1 : 0; }
+
   update(message) {
     super.update(message);
     const { poses, polygon, point } = message;

@@ -10,8 +10,7 @@ const ROBOTS = 5; // between the orders of layers: robots are drawn here
 const SERIES = 8; // colours --c1 to --c8
 const MOST_NAMES = 40, MOST_SMOOTH = 30; // names that are written; robots whose scans and trails are drawn by smooth paths
 const ROLES = { back: "ground", halo: "ground", text: "fg" }, NAMES = ["grid", "dim", "robot", "goal", "scan", "trail", "path", "local", "particles", "camera", "axis-x", "axis-y"];
-const QUIET = /(^|\/)(ground_truth|depth\/camera_info|initialpose|global_costmap\/published_footprint)$/; // shown only where it is switched on: what is like another layer
-const LOCAL = /(^|[/_])(local|transformed|optimal)/; // paths of the next seconds, beside the one to the goal
+const QUIET = /(^|\/)(ground_truth|depth\/camera_info|initialpose|global_costmap\/published_footprint|(transformed|received)_global_plan)$/; // shown only where it is switched on: what is like another layer
 
 export class Scene {
   /** @param view camera  @param off, on names of layers that are switched off, and on against the default */
@@ -56,7 +55,7 @@ export class Scene {
     this.spaces = [...new Set(spaces)];
     let next = 1; // the first one is like that of trails
     for (const [name, { layer, kind, topic }] of entries) {
-      const role = kind.role === "path" && LOCAL.test(name) ? "local" : kind.role, key = `${topic.type} ${role}`;
+      const role = kind.role === "path" && layer.above ? "local" : kind.role, key = `${topic.type} ${role}`;
       const own = this.spaces.length > 1 && this.spaceColour(name);
       const isFirst = role && !used.has(key) && !QUIET.test(name);
       layer.colour = own || (isFirst ? this.colours[role] : this.series[next++ % SERIES]);
