@@ -188,22 +188,31 @@ class PathAlignCritic(Critic):
 
 @dataclass(frozen=True)
 class PathFollowCritic(Critic):
-    """Distance of a rollout's end from a point of the path a little beyond what is reached: it leads on."""
+    """Metres of the path from where a rollout ends to a point a little beyond what can be reached: it leads on.
+
+    They count along the path, and not straight as in Nav2, which leads into the corner before a gap; what the end is
+    off the path is added.
+    """
 
     cost_weight: float = 5.0
     offset_from_furthest: int = 6
     threshold_to_consider: float = 1.4
 
     def judge(self, batch: Batch) -> Judgement | None:
-        """Return the distance in metres times the weight."""
-        if len(batch.path.x) < 2 or batch.path.length < self.threshold_to_consider:
+        """Return the metres times the weight."""
+        path = batch.path
+        if len(path.x) < 2 or path.length < self.threshold_to_consider:
             return None
-        last = len(batch.path.x) - 1
+        last = len(path.x) - 1
         index = min(batch.furthest + self.offset_from_furthest, last)
         clear = np.flatnonzero(batch.is_clear[index:])
         index = index + int(clear[0]) if len(clear) else last
-        dx, dy = batch.x[-1] - F(batch.path.x[index]), batch.y[-1] - F(batch.path.y[index])
-        return self._weighted(np.sqrt(dx * dx + dy * dy))
+        x, y = path.x[index::-2].astype(F), path.y[index::-2].astype(F)
+        dx, dy = batch.x[-1] - x[:, None], batch.y[-1] - y[:, None]
+        squares = dx * dx + dy * dy
+        nearest = squares.argmin(axis=0)
+        off = np.sqrt(squares.min(axis=0))
+        return self._weighted(off + nearest.astype(F) * F(2 * path.spacing))
 
 
 @dataclass(frozen=True)
@@ -246,10 +255,10 @@ class PreferForwardCritic(Critic):
 class MoversCritic(Critic):
     """Nearness to where moving obstacles will be, if they go on as they do. Nav2 has none of this kind."""
 
-    cost_weight: float = 40.0
-    margin: float = 0.15
+    cost_weight: float = 50.0
+    margin: float = 0.1
     """Metres of distance from a mover that are free of cost."""
-    spread: float = 0.1
+    spread: float = 0.05
     """Metres by which the margin grows in a second, since nobody knows what a person will do."""
 
     def judge(self, batch: Batch) -> Judgement | None:

@@ -55,7 +55,7 @@ class Options:
     az_max: float = 3.5
     vx_std: float = 0.2
     wz_std: float = 0.4
-    regenerate_noises: bool = False
+    regenerate_noises: bool = True
     min_turning_r: float = 0.0
 
     def limited(self, limit: float, *, percentage: bool) -> Options:
@@ -154,29 +154,41 @@ class Rollouts:
         found = costs_at(around.costs, path.x.astype(F), path.y.astype(F))
         clear = (found < INSCRIBED) | (found == UNKNOWN)
         furthest = min(len(path.x) - 1, round(options.vx_max * options.time_steps * options.model_dt / path.spacing))
-        v, w = self._drawn(speed, is_blocked=int((~clear).sum()) > _BLOCKED)
+        is_blocked = int((~clear).sum()) > _BLOCKED
+        v, w = self._drawn(speed, is_blocked=is_blocked)
         x, y, theta = integrated(pose, v, w, options.model_dt)
         batch = Batch(x, y, theta, v, w, options.model_dt, pose, path, clear, furthest, goal, around)
-        total, collides = self._judged(batch)
+        total, collides = self._judged(batch, fan=len(self._fan) if is_blocked else 0)
         if collides.all():
             return False
         total -= total.min()
         weights = np.exp(total * F(-1 / options.temperature))
         good = np.flatnonzero(weights >= _WEIGHTY)
         weights = weights[good] / weights[good].sum(dtype=F)
-        mean = np.stack([(each[:, good] * weights).sum(axis=1, dtype=F) for each in (v, w)], axis=1)
+        drawn = self._unclipped(v, good), w[:, good]
+        mean = np.stack([(each * weights).sum(axis=1, dtype=F) for each in drawn], axis=1)
         self._sequence = self._feasible(self._smoothed(mean), speed)
         if self._collides(pose, around):  # two ways round an obstacle have a mean that leads into it
             best = int(total.argmin())
             self._sequence = np.stack([v[:, best], w[:, best]], axis=1)
         return True
 
+    def _unclipped(self, v: Singles, good: npt.NDArray[np.intp]) -> Singles:
+        """Return speeds as they were drawn where they are the greatest there are.
+
+        The mean of what was clipped to the limit is below it, and so no robot would drive at full speed.
+        """
+        assert self._noise is not None
+        clipped = v[:, good]
+        drawn = self._noise[:, 0, good] + self._sequence[:, :1]
+        return np.where(clipped >= F(self.options.vx_max), np.maximum(drawn, clipped), clipped)
+
     def _collides(self, pose: Pose, around: Surroundings) -> bool:
         """Return whether the sequence leads into an obstacle."""
         x, y, _ = integrated(pose, self._sequence[:, :1], self._sequence[:, 1:], self.options.model_dt)
         return bool(obstructed(around.costs, pose, x, y, costs_at(around.costs, x, y)).any())
 
-    def _judged(self, batch: Batch) -> tuple[Singles, npt.NDArray[np.bool_]]:
+    def _judged(self, batch: Batch, *, fan: int) -> tuple[Singles, npt.NDArray[np.bool_]]:
         total, options = np.zeros(batch.x.shape[1], F), self.options
         collides = np.zeros(batch.x.shape[1], bool)
         for critic in self.critics:
@@ -188,7 +200,9 @@ class Rollouts:
             for each, column, deviation in ((batch.v, 0, options.vx_std), (batch.w, 1, options.wz_std)):
                 mean = self._sequence[:, column, None]
                 if deviation > 0.0 and mean.any():
-                    total += ((each - mean) * mean).sum(axis=0, dtype=F) * F(options.gamma / deviation**2)
+                    far = ((each - mean) * mean).sum(axis=0, dtype=F) * F(options.gamma / deviation**2)
+                    far[1 : fan + 1] = 0.0  # this is a measure for what was drawn about the sequence
+                    total += far
         return total, collides
 
     def _drawn(self, speed: tuple[float, float], *, is_blocked: bool = False) -> tuple[Singles, Singles]:

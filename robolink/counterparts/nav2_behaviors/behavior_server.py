@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from typing import Any
 
@@ -15,7 +16,7 @@ from robolink.counterparts.nav2_util.simple_action_server import SimpleActionSer
 from robolink.counterparts.nav2_util.twist_publisher import TwistPublisher
 from robolink.counterparts.program import pause, spin_program
 from robolink.duration import Duration
-from robolink.exceptions import ParameterException
+from robolink.exceptions import InvalidHandle, ParameterException
 from robolink.geometry.plane import Pose, is_finite, pose_of
 from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from robolink.parameters.descriptors import described
@@ -154,8 +155,9 @@ class BehaviorServer(LifecycleNode):
 
     def drive(self, v: float, w: float) -> None:
         """Send speeds: m/s ahead, rad/s to the left."""
-        if self._twists is not None:
-            self._twists.publish(v, w)
+        with contextlib.suppress(InvalidHandle):  # the program may have ended, and its publishers with it
+            if self._twists is not None:
+                self._twists.publish(v, w)
 
     # Goals
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import Any
 
@@ -24,7 +25,7 @@ from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
 from robolink.counterparts.nav2_util.twist_publisher import TwistPublisher
 from robolink.counterparts.program import pause, spin_program
-from robolink.exceptions import ParameterException
+from robolink.exceptions import InvalidHandle, ParameterException
 from robolink.geometry.plane import Pose, Speeds
 from robolink.interfaces.nav2_msgs.action import FollowPath
 from robolink.interfaces.nav2_msgs.msg import SpeedLimit
@@ -326,8 +327,9 @@ class ControllerServer(LifecycleNode):
             self._twists.publish(command.v, command.w)
 
     def _stop(self) -> None:
-        if self._twists is not None:
-            self._twists.stop()
+        with contextlib.suppress(InvalidHandle):  # the program may have ended, and its publishers with it
+            if self._twists is not None:
+                self._twists.stop()
 
     def _publish_paths(self, path: LocalPath, command: Command) -> None:
         """Publish the part of the path ahead and the way that the robot is about to take, if anybody listens."""
