@@ -27,6 +27,8 @@ _FINEST, _COARSEST = 0.02, 0.1
 """Range of the side of a matcher's cells, in metres: it refines below a cell, and time grows with the square."""
 _SURE = (0.02, 0.006)
 """Deviations (metres, radians) of what lies between two keyframes up to which matching them would bring nothing."""
+_CELLS = 800
+"""Cells from the middle of a matcher's field to its border: where a lidar sees farther, they become larger."""
 _BREAK = np.diag([1e4, 1e4, 1e2])
 """Covariance of a step that nothing was measured of: from the last pose of a map to the first one of a new start."""
 _STRANGE = (0.55, 0.3)
@@ -122,6 +124,8 @@ class Mapper:
         self._first = 0
         self._occupancy = self._empty()
         self._drawn: list[Pose] = []
+        self.too_far = 0
+        """Scans that were left out of the map, since it would have become too large."""
 
     def _empty(self) -> Occupancy:
         given = self.options
@@ -239,8 +243,8 @@ class Mapper:
         return near or [len(self.keyframes) - 1]
 
     def points_of(self, numbers: list[int]) -> Floats:
-        """Return the points of keyframes in the map, as rows."""
-        return np.concatenate([_placed(self.keyframes[each].points, self.graph.pose(each)) for each in numbers])
+        """Return the points of keyframes in the map, and those between them on walls, as rows."""
+        return np.concatenate([_placed(self.keyframes[each].scan.surface, self.graph.pose(each)) for each in numbers])
 
     def _matched(self, keyframe: Keyframe, guess: Pose, spread: Floats, numbers: list[int]) -> Match:
         """Match a scan onto keyframes around a guess, whose own covariance is given."""
@@ -259,7 +263,7 @@ class Mapper:
     def _field(self, numbers: list[int], guess: Pose, keyframe: Keyframe, reach: float, *, loop: bool = False) -> Field:
         given = self.options
         finest = given.loop_search_space_resolution if loop else max(given.correlation_search_space_resolution, 0.03)
-        cell = min(max(finest, _FINEST), _COARSEST)
+        cell = max(min(max(finest, _FINEST), _COARSEST), keyframe.radius / _CELLS)
         smear = given.loop_search_space_smear_deviation if loop else given.correlation_search_space_smear_deviation
         return Field(
             self.points_of(numbers),
@@ -418,7 +422,8 @@ class Mapper:
                 self._drawn[number] = pose
             else:
                 self._drawn.append(pose)
-            self._occupancy.add(pose, beams)
+            fits = self._occupancy.add(pose, beams)
+            self.too_far += not fits
         return len(stale) - len(stale[:most])
 
     def _is_stale(self, number: int) -> bool:

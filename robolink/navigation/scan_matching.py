@@ -27,10 +27,13 @@ _NATS = 4.5
 _STEPS = 127
 """Steps into which that fall is divided: the sum of two still fits into a byte."""
 _SCORES = np.append(np.round(255.0 * np.exp(-np.arange(_STEPS) * _NATS / _STEPS)), np.zeros(129)).astype(np.uint8)
+_TABLE = _SCORES / 255.0
 _EXPANSIONS = 1500
 """Blocks that a search divides at most, which bounds its time where every place is alike."""
 _NEIGHBOURS = 8
 """Points before and after one that make its surface, if they are near."""
+_JOINED = 2.5
+"""Metres between two neighbours on a wall from which on the wall between them is not believed."""
 _LOOSE = 0.015
 """Mean square of a motion across surfaces that is taken for noise."""
 _LEAST_INFORMATION = 1e-2
@@ -92,11 +95,16 @@ class Field:
         side = inner + 2 * self._margin
         self.origin = (centre[0] - side * resolution / 2, centre[1] - side * resolution / 2)
         self._side = side
-        self.scores = self._drawn(points)
+        self._falls = self._drawn(points)
+        self.scores: Cells = _SCORES.take(self._falls)
+        self.sharp_smear = min(smear, max(smear / 2.0, 1.2 * resolution))
+        """Standard deviation of the sharper Gaussian with which `refined` looks at the same points, in metres."""
+        sharper = (smear / self.sharp_smear) ** 2 * _NATS / _STEPS
+        self._sharp = np.append(np.exp(-np.arange(_STEPS) * sharper), np.zeros(129))
         self._maxima: dict[int, Cells] = {1: self.scores}
 
     def _drawn(self, points: Floats) -> Cells:
-        """Draw points: along rows one by one, then along columns by whole arrays; logarithms of Gaussians add up."""
+        """Return how far the logarithm of each cell's score has fallen: along rows first, then along columns."""
         side, spread = self._side, self._spread
         cells = np.floor((points - self.origin) / self.resolution)
         fits = ((cells >= spread) & (cells < side - spread)).all(axis=1)
@@ -108,13 +116,13 @@ class Field:
             for each in (places + shift, places - shift):
                 falls[each] = np.minimum(falls[each], fall[shift])
         along = falls.reshape(side, side)
-        found, moved = along.copy(), np.empty_like(along)
+        found: Cells = along.copy()
+        moved = np.empty_like(along)
         for shift in range(1, spread + 1):
             np.add(along, fall[shift], out=moved)
             np.minimum(found[shift:], moved[:-shift], out=found[shift:])
             np.minimum(found[:-shift], moved[shift:], out=found[:-shift])
-        scores: Cells = _SCORES.take(found)
-        return scores
+        return found
 
     @property
     def _fall(self) -> float:
@@ -150,20 +158,30 @@ class Field:
         numbers: npt.NDArray[np.int32] = places[:, :, 1] * np.int32(self._side) + places[:, :, 0]
         return numbers
 
-    def responses(self, points: Floats, poses: Floats) -> Floats:
-        """Return the mean scores of poses, from 0 to 1, interpolated between the centres of cells."""
+    def responses(self, points: Floats, poses: Floats, *, sharp: bool = False) -> Floats:
+        """Return the mean scores of poses, from 0 to 1, interpolated between the centres of cells.
+
+        Args:
+            points: Points of a scan, in the frame of the poses, as rows.
+            poses: Rows of x, y and heading.
+            sharp: True takes the sharper Gaussian.
+        """
         places = self.places(points, poses)
         places -= 0.5
         np.clip(places, 0, self._side - 2, out=places)
         whole = places.astype(np.int64)
         share = places - whole
         right, up = share[:, :, 0], share[:, :, 1]
-        flat, cell = self.scores.ravel(), whole[:, :, 1] * self._side + whole[:, :, 0]
-        below = (1.0 - right) * flat.take(cell) + right * flat.take(cell + 1)
-        cell += self._side
-        above = (1.0 - right) * flat.take(cell) + right * flat.take(cell + 1)
-        found: Floats = (below + up * (above - below)).mean(axis=1) / 255.0
-        return found
+        flat, table = self._falls.ravel(), self._sharp if sharp else _TABLE
+        cell = whole[:, :, 1] * self._side + whole[:, :, 0]
+
+        def score(shift: int) -> Floats:
+            found: Floats = table.take(flat.take(cell + shift))
+            return found
+
+        below = (1.0 - right) * score(0) + right * score(1)
+        above = (1.0 - right) * score(self._side) + right * score(self._side + 1)
+        return np.asarray((below + up * (above - below)).mean(axis=1))
 
     def search(self, points: Floats, guess: Pose, window: Window, least: float = 0.0) -> tuple[Pose, float] | None:
         """Return the pose of the window with the largest response, to a cell and an angle's step, and that response.
@@ -259,19 +277,22 @@ def _stencil() -> tuple[Floats, Floats]:
 
 def _surface(field: Field, points: Floats, pose: Pose, steps: Floats) -> Surface:
     stencil, fit = _stencil()
-    responses = field.responses(points, np.array(pose) + stencil * steps)
+    responses = field.responses(points, np.array(pose) + stencil * steps, sharp=True)
     _, *gradient, xx, yy, tt, xy, xt, yt = (fit @ responses).tolist()
     return Surface(np.array(gradient), np.array([[xx, xy, xt], [xy, yy, yt], [xt, yt, tt]]))
 
 
 class Scan(NamedTuple):
-    """Points of a scan in the frame of the robot, as rows, and the `normals` of the surfaces that they lie on.
+    """Points of a scan in the frame of the robot, as rows, and the surfaces that they lie on.
 
-    A normal is as long as its surface is straight: 1 for a wall, 0 where there is none.
+    A normal is as long as its surface is straight: 1 for a wall, 0 where there is none. `surface` are the points, and
+    more between those that are neighbours on a straight wall: what later scans are matched onto, since beams far off
+    hit a wall at other places each time.
     """
 
     points: Floats
     normals: Floats
+    surface: Floats
 
 
 def scan_of(points: Floats) -> Scan:
@@ -292,7 +313,24 @@ def scan_of(points: Floats) -> Scan:
     along, total = np.hypot(xx - yy, 2.0 * xy), np.maximum(xx + yy, 1e-12)
     angle = 0.5 * np.arctan2(2.0 * xy, xx - yy)
     straight = np.where(count >= 3, along / total, 0.0)
-    return Scan(points, straight[:, None] * np.column_stack((-np.sin(angle), np.cos(angle))))
+    normals = straight[:, None] * np.column_stack((-np.sin(angle), np.cos(angle)))
+    return Scan(points, normals, np.concatenate((points, _between(points, normals))))
+
+
+def _between(points: Floats, normals: Floats) -> Floats:
+    """Return points between neighbours on straight walls, some 6 cm apart, at most a dozen between two."""
+    if len(points) < 2:
+        return np.empty((0, 2))
+    gaps, after = np.roll(points, -1, axis=0) - points, np.roll(normals, -1, axis=0)
+    lengths = np.sqrt(np.square(gaps).sum(axis=1))
+    across = np.maximum(np.abs((gaps * normals).sum(axis=1)), np.abs((gaps * after).sum(axis=1)))
+    straight = np.minimum(np.square(normals).sum(axis=1), np.square(after).sum(axis=1)) > 0.7
+    joined = straight & (across < 0.15 * lengths) & (lengths < _JOINED)
+    counts = np.where(joined, np.minimum(lengths / 0.06, 12.0), 0.0).astype(np.int64)
+    place = np.repeat(np.arange(len(points)), counts)
+    number = np.arange(len(place)) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+    found: Floats = points[place] + gaps[place] * (number / (counts[place] + 1))[:, None]
+    return found
 
 
 def _outlined(scan: Scan, heading: float, radius: float) -> Floats:
@@ -313,7 +351,7 @@ def refined(field: Field, scan: Scan, pose: Pose, rounds: int = 3) -> Match:
     """Return the best pose near another, below the size of a cell, with its response and covariance.
 
     The covariance is that of as many beams as there are points (at most 200, since the errors of neighbours are
-    alike), each with an error of half the field's smear: about twice what matches in simulated rooms show.
+    alike), each with an error of half the sharper smear: about twice what matches in simulated rooms show.
 
     Args:
         field: Scores of earlier scans.
@@ -324,24 +362,26 @@ def refined(field: Field, scan: Scan, pose: Pose, rounds: int = 3) -> Match:
     points = scan.points
     radius = math.sqrt(float(np.mean(np.square(points).sum(axis=1)))) + field.resolution
     steps = np.array([field.resolution, field.resolution, field.resolution / radius])
-    best, response = pose, float(field.responses(points, np.array([pose]))[0])
+    best, response = pose, float(field.responses(points, np.array([pose]), sharp=True)[0])
     for _ in range(rounds):
         surface = _surface(field, points, best, steps)
         moved = _newton(surface) * steps
         there = Pose(*(np.array(best) + moved).tolist())
-        found = float(field.responses(points, np.array([there]))[0])
+        found = float(field.responses(points, np.array([there]), sharp=True)[0])
         if found <= response:
             break
         best, response = there, found
         if (np.abs(moved) < 0.02 * steps).all():
             break
-    wide = np.maximum(steps, np.array([field.smear, field.smear, field.smear / radius]) * 0.7)
+    smear = field.sharp_smear
+    wide = np.maximum(steps, np.array([smear, smear, smear / radius]) * 0.7)
     curvature = _surface(field, points, best, wide).curvature / np.outer(wide, wide)
     scale = np.array([1.0, 1.0, radius])
     count = 4.0 * min(len(points), 200)
     covariance = _inverse(count * -curvature / np.outer(scale, scale))
     # Points that are far apart look like posts, which hold a scan where a wall would not: surfaces have a say, too.
-    covariance += _inverse(count * _outlined(scan, best.theta, radius) / field.smear**2)
+    covariance += _inverse(count * _outlined(scan, best.theta, radius) / smear**2)
+    response = float(field.responses(points, np.array([best]))[0])
     return Match(best._replace(theta=wrapped(best.theta)), response, covariance / np.outer(scale, scale))
 
 

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from robolink.geometry.plane import Pose, placed_on, seen_from
 from robolink.navigation.mapper import Fit, Mapper, Options
 from robolink.navigation.occupancy import Beams, Lidar, beams_of
+from robolink.navigation.scan_matching import Field
 from tests.support import mapping_drives
 from tests.support.mapping_drives import Drive, driven, wall_distances
 from tests.support.scanned_rooms import CORRIDOR, ROOM, Walls, points
@@ -146,8 +148,8 @@ def test_in_a_corridor_the_map_does_not_slide() -> None:
     mapper = Mapper()
     fits, odometry = mapped(mapper, CORRIDOR, way([(0.0, 0.2), (20.0, 0.2)]))
     assert odometry.x == pytest.approx(20.3, abs=0.4)
-    assert fits[-1].pose.x == pytest.approx(odometry.x, abs=0.6)  # what odometry says, and no scan denies
-    assert fits[-1].pose.y == pytest.approx(0.2, abs=0.05)
+    assert fits[-1].pose.x == pytest.approx(odometry.x, abs=0.5)  # what odometry says, and no scan denies
+    assert fits[-1].pose.y == pytest.approx(0.2, abs=0.1)
     assert abs(fits[-1].pose.theta) < 0.01
     step = mapper.graph.steps[1][-1]
     assert step[0, 0] > 50 * step[1, 1]
@@ -229,6 +231,33 @@ def test_keyframes_that_moved_are_drawn_anew() -> None:
     after = mapper.grid()
     assert after.origin[0] == pytest.approx(before.origin[0] + 10.0, abs=0.051)
     assert (after.cells == 100).sum() == pytest.approx((before.cells == 100).sum(), rel=0.1)
+
+
+def test_a_lidar_that_sees_far_costs_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    sides = []
+
+    class Watched(Field):
+        def __init__(self, *args: Any, **options: Any) -> None:
+            super().__init__(*args, **options)
+            sides.append(self.scores.shape[0])
+
+    monkeypatch.setattr("robolink.navigation.mapper.Field", Watched)
+    mapper = Mapper()
+    hall = tuple((x * 15, y * 15, u * 15, v * 15) for x, y, u, v in ROOM[:4])
+    for number in range(4):
+        pose = Pose(70.0 + 0.6 * number, 60.0)
+        scan = points(hall, pose, seed=number, most=200.0)
+        mapper.process(Beams(scan, len(scan)), Pose(70.0 + 0.63 * number, 60.0))
+    assert max(sides) < 2300
+    assert mapper.pose.x == pytest.approx(71.8, abs=0.1)
+
+
+def test_scans_too_far_for_one_map_are_counted() -> None:
+    mapper = Mapper(Options(use_scan_matching=False))
+    for x in (0.0, 1e6, 1e6 + 1.0):
+        mapper.process(scan_of(ROOM, Pose(2.0, 2.0)), Pose(x, x))
+    assert max(mapper.grid().cells.shape) < 300
+    assert mapper.too_far == 2
 
 
 def test_far_from_the_origin_it_is_the_same() -> None:

@@ -101,6 +101,20 @@ def test_along_a_corridor_the_match_is_uncertain_and_odometry_says_where() -> No
     assert math.sqrt(found.covariance[0, 0]) < 0.035
 
 
+def test_walls_are_filled_between_their_points_and_nothing_else_is() -> None:
+    scan = scan_of(points(ROOM, Pose(2.0, 2.0), noise=0.0))
+    more = placed(Pose(2.0, 2.0), scan.surface[len(scan.points) :])
+    assert len(more) > 100
+    x, y = more.T
+    near = np.minimum.reduce([np.abs(x), np.abs(y), np.abs(y - 8), np.abs(x - 6), np.abs(x - 10)])
+    inside = (x > 2.9) & (x < 3.5) & (y > 2.9) & (y < 3.7) | (x > 0.9) & (x < 2.1) & (y > 6.5)
+    assert near[~inside].max() < 0.03
+    assert len(scan_of(np.empty((0, 2))).surface) == 0
+    assert len(scan_of(np.ones((1, 2))).surface) == 1
+    walls = np.abs(scan.normals).max(axis=1) > 0.95
+    assert np.mean(walls) > 0.85
+
+
 def test_where_the_scans_are_certain_odometry_has_no_say() -> None:
     match = Match(Pose(1.0, 2.0, 3.0), 0.9, np.diag([1e-5, 1e-5, 1e-6]))
     found = blended(match, Pose(1.1, 1.9, 3.1), ODOMETRY)

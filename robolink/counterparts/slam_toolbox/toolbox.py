@@ -309,6 +309,8 @@ class SlamToolbox(LifecycleNode):
             await pause(self, 0.0, self._alone)
         if not self._is_active() or mapper is not self.mapper:
             return
+        if mapper.too_far:
+            self._warn(f"{mapper.too_far} scans are not in the map, which would be too large with them")
         self._publish_map()
         if mapper.keyframes and self._graphs.get_subscription_count():
             now = self.get_clock().now().to_msg()
