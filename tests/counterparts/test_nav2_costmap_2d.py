@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+import random
 from typing import Any
 
 import numpy as np
 import pytest
 
-from robolink.interfaces.geometry_msgs.msg import PolygonStamped, PoseStamped, TransformStamped
+from robolink.interfaces.geometry_msgs.msg import Polygon, PolygonStamped, PoseStamped, TransformStamped
 from robolink.interfaces.lifecycle_msgs.msg import Transition
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState
 from robolink.interfaces.nav2_msgs.msg import Costmap as CostmapMsg
@@ -21,10 +22,11 @@ from robolink.interfaces.nav2_msgs.srv import (
     GetCosts,
 )
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
-from robolink.interfaces.sensor_msgs.msg import LaserScan
+from robolink.interfaces.sensor_msgs.msg import LaserScan, PointCloud2
 from robolink.qos import DurabilityPolicy, QoSProfile
 from robolink.testing import System
 from robolink.tf2.static_transform_broadcaster import StaticTransformBroadcaster
+from tests.support.hostile_values import Hostile
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SCAN = {
@@ -270,3 +272,26 @@ def test_without_a_robot_there_are_no_costs_and_a_reason(system: System) -> None
     system.expect_log("no transform from 'base_link' to 'map'")
     system.run(3.0)
     system.expect_log("the transform from base_link to map did not become available before timeout")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3))
+def test_hostile_messages_end_no_costmap_that_is_active(system: System, seed: int) -> None:
+    sources = {"obstacle_layer.observation_sources": "scan cloud", "obstacle_layer.cloud.data_type": "PointCloud2"}
+    started(system, **SCAN | sources, **{"obstacle_layer.cloud.clearing": True, "track_unknown_space": True})
+    transform(system, "base_link", "map", 1.05, 1.05)
+    transform(system, "laser", "base_link", 0.0, 0.0, 0.2)
+    dice = random.Random(seed)
+    hostile = Hostile(dice, ["laser", "base_link", "map"])
+    for _ in range(40):
+        kinds = [("/scan", LaserScan), ("/cloud", PointCloud2), ("/map", OccupancyGrid), ("/footprint", Polygon)]
+        topic, kind = dice.choice(kinds)
+        message = hostile.message(kind)
+        if hasattr(message, "header"):
+            message.header.frame_id = dice.choice(["laser", "map", message.header.frame_id])
+        system.publish(topic, message, LATCHED if topic == "/map" else 10)
+        system.run(dice.choice([0.0, 0.1, 0.3]))
+    publish_map(system, np.zeros((30, 30)))
+    system.run(0.5)
+    assert costs(system).shape == (30, 30)
+    assert system.failures == []
