@@ -12,6 +12,7 @@ import pytest
 from robolink.sim.maps.gridmap import load_map
 from robolink.sim.world import World
 from robolink.sim.worldfile import load_world
+from tests.support.navigation_lives import lived
 from tests.support.navigation_worlds import (
     GOAL,
     KINDS,
@@ -75,3 +76,16 @@ def test_clearance_is_the_distance_from_a_box() -> None:
     assert layout.clearance([0, 1.5, 3.5], [3, 0, 5]) == pytest.approx([2.0, 1.0, 5.0])
     assert layout.clearance(0.0, 0.0) == pytest.approx(-0.5)
     assert layout.clearance(0.0, 0.0, mapped_only=True) == math.inf
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [1, 10, 17])
+def test_a_robot_reaches_its_goal_without_contact(number: int, tmp_path: Path) -> None:
+    life = lived(navigation_world(number), tmp_path)
+    assert life.is_good, life
+
+
+@pytest.mark.slow
+def test_a_robot_reaches_its_goal_with_the_map_that_it_made(tmp_path: Path) -> None:
+    life = lived(navigation_world(2), tmp_path, has_own_map=True)
+    assert life.is_good, life

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from robolink.action import ActionClient
 from robolink.companions.ament_index import get_package_share_directory
@@ -14,6 +15,7 @@ from robolink.geometry.plane import Pose
 from robolink.interfaces.action_msgs.msg import GoalStatus
 from robolink.interfaces.geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from robolink.interfaces.nav2_msgs.action import NavigateToPose
+from robolink.interfaces.nav2_msgs.srv import SaveMap
 from robolink.interfaces.std_srvs.srv import Trigger
 from robolink.testing import System
 from tests.support.navigation_worlds import NavigationWorld
@@ -60,25 +62,24 @@ class Navigation:
     Args:
         system: The system.
         world: Path of the world file.
-        chart: Path of the map's file.
+        chart: Path of the map's file; None makes a map, in the frame of odometry, which is the world's.
         start: Where the robot begins, which amcl is told.
         parameters: Path of a file of parameters.
-        launch: Arguments of the launch file.
     """
 
     def __init__(
-        self, system: System, world: Path, chart: Path, start: Pose, parameters: Path = PARAMETERS, **launch: Any
+        self, system: System, world: Path, chart: Path | None, start: Pose, parameters: Path = PARAMETERS
     ) -> None:
-        self.system = system
+        self.system, self.feedback = system, cast(Any, None)
         system.start("world", parameters={"world": str(world)})
-        arguments: Mapping[str, Any] = {"map": str(chart), "params_file": str(parameters), **launch}
-        system.launch("nav2_bringup bringup_launch.py", arguments=arguments)
+        given = {"slam": "True"} if chart is None else {"map": str(chart)}
+        system.launch("nav2_bringup bringup_launch.py", arguments={"params_file": str(parameters), **given})
         self.client = ActionClient(system.node, NavigateToPose, "navigate_to_pose")
         system.expect_log("Managed nodes are active", within=30.0)
-        self.estimate(start)
-        for name in ("localization", "navigation"):
+        for name in ("slam" if chart is None else "localization", "navigation"):
             system.wait_until(lambda name=name: self._is_active(name), within=30.0)  # type: ignore[misc]
-        self.feedback: Any = None
+        if chart is not None:
+            self.estimate(start)
 
     def _is_active(self, name: str) -> bool:
         return bool(self.system.call(Trigger, f"/lifecycle_manager_{name}/is_active").success)
@@ -107,18 +108,43 @@ class Navigation:
         return answer.status, answer.result.error_code, answer.result.error_msg
 
 
-def lived(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS, chart: Path | None = None) -> Life:
-    """Let a robot drive through a world, and return what became of it. `chart` is another map than the true one."""
-    file, true_chart = world.write(folder)
+def places_on(way: Sequence[tuple[float, float]], spacing: float) -> list[Pose]:
+    """Return places along a line, about `spacing` metres apart, without its ends."""
+    found, left = [], spacing
+    for (x1, y1), (x2, y2) in pairwise(way):
+        left -= math.dist((x1, y1), (x2, y2))
+        if left <= 0.0:
+            found.append(Pose(x2, y2, math.atan2(y2 - y1, x2 - x1)))
+            left = spacing
+    return found
+
+
+def mapped(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS) -> Path:
+    """Let a robot make a map while somebody who sees the world leads it to the goal and back; return the map's file."""
+    file, _ = world.write(folder)
     with System(seed=world.seed % 2**31) as system:
-        navigation = Navigation(system, file, chart or true_chart, world.start, parameters)
+        navigation = Navigation(system, file, None, world.start, parameters)
+        system.run(3.0)
+        for pose in (*places_on(world.way, 2.0), world.goal, world.start):
+            navigation.end(navigation.send(pose), within=LONGEST * world.seconds)
+        request = SaveMap.Request(map_topic="map", map_url=str(folder / "own"), image_format="pgm")
+        request.map_mode, request.free_thresh, request.occupied_thresh = "trinary", 0.15, 0.65
+        assert system.call(SaveMap, "/map_saver/save_map", request, within=20.0).result
+    return folder / "own.yaml"
+
+
+def lived(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS, *, has_own_map: bool = False) -> Life:
+    """Let a robot drive through a world, and return what became of it; with its own map it has been there before."""
+    file, chart = world.write(folder)
+    if has_own_map:
+        chart = mapped(world, folder, parameters)
+    with System(seed=world.seed % 2**31) as system:
+        navigation = Navigation(system, file, chart, world.start, parameters)
         system.run(2.0)  # costmaps have seen what is around
         robot = system.robot()
         before, began, cpu = robot.contacts, system.time, time.process_time()
-        handle = navigation.send(world.goal)
-        ended = handle.get_result_async()
-        most = LONGEST * world.seconds
-        while not ended.done() and system.time - began < most:
+        ended = navigation.send(world.goal).get_result_async()
+        while not ended.done() and system.time - began < LONGEST * world.seconds:
             system.run(0.5)
         seconds = system.time - began
         answer: Any = ended.result()
