@@ -45,29 +45,33 @@ def best_cluster(poses: Floats, weights: Floats) -> Whole:
 
 def _labels(bins: list[int]) -> Whole:
     """Return the number of the cluster of each bin."""
-    index = {each: place for place, each in enumerate(bins)}
-    labels = np.full(len(bins), -1, np.int64)
-    count = 0
-    for start in range(len(bins)):
-        if labels[start] >= 0:
+    left, label = set(bins), dict[int, int]()
+    for start in bins:
+        if start not in left:
             continue
-        labels[start], waiting = count, [bins[start]]
+        left.remove(start)
+        waiting, count = [start], len(label)
         while waiting:
-            for near in _neighbours(waiting.pop()):
-                place = index.get(near)
-                if place is not None and labels[place] < 0:
-                    labels[place] = count
-                    waiting.append(near)
-        count += 1
-    return labels
+            bin_ = waiting.pop()
+            label[bin_] = count
+            near = [each for each in _neighbours(bin_) if each in left]
+            left.difference_update(near)
+            waiting += near
+    return np.array([label[each] for each in bins], np.int64)
 
 
 def _neighbours(bin_: int) -> list[int]:
-    """Return the bins that touch one; headings go round."""
-    place, turn = divmod(bin_, TURNS)
-    turns = ((turn - 1) % TURNS, turn, (turn + 1) % TURNS)
-    return [(place + along * _ROW + across) * TURNS + each for along, across, each in _around(turns)]
+    """Return the bins that touch one, and itself; headings go round."""
+    turn = bin_ % TURNS
+    steps = _STEPS[0] if turn == 0 else _STEPS[2] if turn == TURNS - 1 else _STEPS[1]
+    return [bin_ + each for each in steps]
 
 
-def _around(turns: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    return list(itertools.product((-1, 0, 1), (-1, 0, 1), turns))
+def _steps(turns: tuple[int, int, int]) -> list[int]:
+    return [
+        (along * _ROW + across) * TURNS + each for along, across, each in itertools.product(_BESIDE, _BESIDE, turns)
+    ]
+
+
+_BESIDE = (-1, 0, 1)
+_STEPS = tuple(map(_steps, ((TURNS - 1, 0, 1), _BESIDE, (-1, 0, 1 - TURNS))))

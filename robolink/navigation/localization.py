@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from robolink.geometry.plane import Pose, placed_on, seen_from, wrapped
+from robolink.navigation.fit_watch import FitWatch
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.likelihood_field import UNITS, LikelihoodField, SensorModel
 from robolink.navigation.motion_models import Alphas, MotionModel, move_differential
@@ -26,8 +27,10 @@ MOST_FIELDS = 4
 """Most likelihood fields that are held, one for each `range_max` of the scanners."""
 FASTEST = 10.0
 """Speed in m/s, and in rad/s, above which odometry has jumped."""
-NEAR = 0.5
-"""Distance from a wall in metres within which a beam's end fits to the map."""
+NEAR = 2.0
+"""Distance from a wall, in cells of the map, within which a beam's end fits to the map."""
+ANYWHERE = 0.7
+"""Share of the particles that are drawn anywhere when scans fit badly, if recovery is requested."""
 
 
 class Beams(NamedTuple):
@@ -52,7 +55,10 @@ class BeamSkip(NamedTuple):
 
 
 class LocalizationOptions(NamedTuple):
-    """Options, with Nav2's parameters of the same names and their defaults; `skip` of None uses every beam."""
+    """Options, with Nav2's parameters of the same names and their defaults.
+
+    `skip` of None uses every beam. With a `recovery_alpha_fast` above 0 a robot that seems lost is searched everywhere.
+    """
 
     particles: FilterOptions = FilterOptions()
     sensor: SensorModel = SensorModel()
@@ -62,6 +68,8 @@ class LocalizationOptions(NamedTuple):
     update_min_d: float = 0.25
     update_min_a: float = 0.2
     resample_interval: int = 1
+    recovery_alpha_slow: float = 0.0
+    recovery_alpha_fast: float = 0.0
 
 
 class Localization:
@@ -76,6 +84,8 @@ class Localization:
     """Latest estimate, at the last update; None before the first one."""
     fit: float = 1.0
     """Share of the last scan's beams that end near a wall of the map, as seen from the estimated pose."""
+    searches: int = 0
+    """Number of times that particles were drawn anywhere, since the robot seemed lost."""
 
     def __init__(self, options: LocalizationOptions, random: np.random.Generator) -> None:
         self._options = options
@@ -92,6 +102,7 @@ class Localization:
         self._seen_at: Pose | None = None
         self._due: dict[str, bool] = {}
         self._updates, self.is_forced = 0, False
+        self.watch = FitWatch(self._options.recovery_alpha_slow, self._options.recovery_alpha_fast)
 
     @property
     def options(self) -> LocalizationOptions:
@@ -155,10 +166,14 @@ class Localization:
         field = self._field(beams.range_max)
         self._weigh(field, beams)
         self.estimate = self.particles.estimate()
-        self.fit = self._fit(field, beams)
+        self._note_fit(field, beams)
         self._updates += 1
-        if self._updates % max(self._options.resample_interval, 1) == 0:
-            self.particles.resample(self._places, self._grid.resolution)
+        if self.seems_lost and self._options.recovery_alpha_fast and self._places.shape[1]:
+            self.particles.scatter_some(ANYWHERE, self._places, self._grid.resolution)
+            self.watch.begin_again()
+            self.searches += 1
+        elif self._updates % max(self._options.resample_interval, 1) == 0:
+            self.particles.resample()
         return True
 
     def note_jump(self, odometry: Pose, seconds: float) -> bool:
@@ -196,11 +211,19 @@ class Localization:
             ratings = ratings[:, _agreed(ratings, field.rating(skip.distance), skip)]
         self.particles.weigh(ratings.sum(axis=1, dtype=np.int32) / UNITS, ratings.shape[1])
 
-    def _fit(self, field: LikelihoodField, beams: Beams) -> float:
-        if self.estimate is None or not len(beams.ahead):
-            return 1.0
+    def _note_fit(self, field: LikelihoodField, beams: Beams) -> None:
+        """Note how well a scan fits to the map from the estimated pose."""
+        if self.estimate is None or self._grid is None or not len(beams.ahead):
+            return
         ratings = field.ratings(np.array(self.estimate.pose)[:, None], beams.ahead, beams.aside)
-        return float((ratings >= field.rating(NEAR)).mean())
+        self.fit = float((ratings >= field.rating(NEAR * self._grid.resolution)).mean())
+        if not self.particles.is_spread():
+            self.watch.note(self.fit)
+
+    @property
+    def seems_lost(self) -> bool:
+        """True if scans fit to the map much worse than usual: the robot may be elsewhere."""
+        return self.watch.is_bad
 
     # Results
 

@@ -8,8 +8,8 @@
         estimate = filter.estimate()
         filter.resample()
 
-What is AMCL's: the number of particles follows their spread (Fox 2003, KLD sampling), poses at random are added when
-scans fit worse than before (Thrun's augmented MCL), and the estimate is the mean of the best cluster.
+What is AMCL's: the number of particles follows their spread (Fox 2003, KLD sampling), and the estimate is the mean of
+the best cluster.
 
 What is different: AMCL weighs a particle by the sum of the cubes of its beams' likelihoods, which hardly tells good
 poses from better ones. Here it is their product, as in the theory, to a power below one: a half, since neighbouring
@@ -25,35 +25,30 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robolink.geometry.plane import Pose
-from robolink.geometry.trigonometry import cos_and_sin
+from robolink.geometry.plane import Pose, wrapped
 from robolink.navigation.clusters import best_cluster, count_bins
 from robolink.navigation.grid import Floats
 from robolink.navigation.motion_models import wrap_headings
 
 POWER = 0.5
 """Greatest power to which the likelihood of a scan is taken."""
-SPREAD = 1.0
-"""Standard deviation of the particles' places, in metres, from which they count as spread."""
+APART, MANY = 1.0, 0.2
+"""Particles are spread widely if more than this share of them is farther than so many metres from the middle."""
 IN_EFFECT = 0.7
-"""Least share of spread particles that must stay in effect after each scan."""
-WORSE = 1.25
-"""Factor by which scans must fit worse than they did before poses at random are added (Gutmann and Fox 2002)."""
+"""Least share of widely spread particles that must stay in effect after each scan."""
 
 
 class FilterOptions(NamedTuple):
     """Options, as Nav2's parameters of the same names.
 
     `pf_err` is the largest error of the distribution that the particles stand for, `pf_z` the normal quantile of the
-    probability that it is kept; the rates are those of the averages by which poses at random are added, 0 for never.
+    probability that it is kept.
     """
 
     min_particles: int = 500
     max_particles: int = 2000
     pf_err: float = 0.05
     pf_z: float = 0.99
-    recovery_alpha_slow: float = 0.0
-    recovery_alpha_fast: float = 0.0
 
 
 class Estimate(NamedTuple):
@@ -82,7 +77,6 @@ class ParticleFilter:
 
     def __init__(self, options: FilterOptions, random: np.random.Generator) -> None:
         self.options, self._random = options, random
-        self._slow = self._fast = 0.0
         self._take(np.zeros((3, options.max_particles)))
 
     def _take(self, poses: Floats) -> None:
@@ -107,10 +101,17 @@ class ParticleFilter:
         """
         self._begin(self._anywhere(self.options.max_particles, places, side))
 
+    def scatter_some(self, share: float, places: Floats, side: float) -> None:
+        """Resample, and draw a share of the particles from everywhere; see `scatter_over`."""
+        most = self.options.max_particles
+        poses = self._drawn(np.cumsum(self.weights), most)
+        anywhere = self._random.random(most) < share
+        poses[:, anywhere] = self._anywhere(int(anywhere.sum()), places, side)
+        self._take(poses)
+
     def _begin(self, poses: Floats) -> None:
         wrap_headings(poses)
         self._take(poses)
-        self._slow = self._fast = 0.0
 
     def _anywhere(self, count: int, places: Floats, side: float) -> Floats:
         chosen = self._random.integers(places.shape[1], size=count)
@@ -133,39 +134,20 @@ class ParticleFilter:
         """
         if not beams:
             return
-        self._note_fit(float(_exp(logs / beams).mean()))
-        floor = IN_EFFECT if self.spread() > SPREAD else 0.0
-        weights = self.weights * tempered(logs - logs.max(), floor)
+        weights = self.weights * tempered(logs - logs.max(), IN_EFFECT if self.is_spread() else 0.0)
         self.weights = weights / weights.sum()
 
-    def _note_fit(self, fit: float) -> None:
-        """Follow how well scans fit, by a slow and a fast average of the likelihood of a beam."""
-        slow, fast = self.options.recovery_alpha_slow, self.options.recovery_alpha_fast
-        self._slow += slow * (fit - self._slow) if self._slow else fit
-        self._fast += fast * (fit - self._fast) if self._fast else fit
+    def is_spread(self) -> bool:
+        """Return True if the particles are spread widely."""
+        x, y = self.poses[0] - np.median(self.poses[0]), self.poses[1] - np.median(self.poses[1])
+        return float((x * x + y * y > APART * APART).mean()) > MANY
 
-    def spread(self) -> float:
-        """Return the standard deviation of the particles' places, in metres."""
-        return math.sqrt(float(self.poses[0].var() + self.poses[1].var()))
-
-    def resample(self, places: Floats | None = None, side: float = 0.0) -> None:
-        """Draw particles by their weights; as many as their spread asks for, some of them anywhere if scans fit badly.
-
-        Args:
-            places: Centres of free squares, as in `scatter_over`; without them none is drawn anywhere.
-            side: Side of the squares in metres.
-        """
+    def resample(self) -> None:
+        """Draw particles by their weights, as many as their spread asks for."""
         sums = np.cumsum(self.weights)
-        most = self.options.max_particles
-        poses = self._drawn(sums, most)
+        poses = self._drawn(sums, self.options.max_particles)
         count = enough_particles(count_bins(poses), self.options)
-        if count < most:
-            poses = self._drawn(sums, count)
-        share = 1.0 - WORSE * self._fast / self._slow if self._slow else 0.0
-        if share > 0.0 and places is not None and places.shape[1]:
-            (lost,) = (self._random.random(count) < share).nonzero()
-            poses[:, lost] = self._anywhere(len(lost), places, side)
-        self._take(poses)
+        self._take(poses if count == poses.shape[1] else self._drawn(sums, count))
 
     def _drawn(self, sums: Floats, count: int) -> Floats:
         """Draw particles by their summed weights: low variance, table 4.4 of Probabilistic Robotics."""
@@ -178,8 +160,10 @@ class ParticleFilter:
         weights = self.weights[members]
         weight = float(weights.sum())
         x, y = (float((self.poses[row][members] * weights).sum()) / weight for row in (0, 1))
-        cos, sin = (float((each * weights).sum()) for each in cos_and_sin(self.poses[2][members]))
-        pose = Pose(x, y, math.atan2(sin, cos))
+        middle = float(self.poses[2][members[weights.argmax()]])
+        turned = self.poses[2][members] - middle
+        turned -= np.rint(turned / math.tau) * math.tau
+        pose = Pose(x, y, wrapped(middle + float((turned * weights).sum()) / weight))
         return Estimate(pose, covariance_about(pose, self.poses, self.weights), weight)
 
 

@@ -15,6 +15,7 @@ from robolink.interfaces.nav2_msgs.srv import SetInitialPose
 from robolink.interfaces.std_srvs.srv import Empty
 from robolink.qos import qos_profile_sensor_data
 from robolink.testing import System
+from robolink.world_node.services import own_type
 from tests.support.localization_lives import Files, Judge, initial, search, start, track, written
 
 
@@ -43,6 +44,26 @@ def test_a_robot_that_may_be_anywhere_is_found(world: str, seed: int, tmp_path: 
         judge, began = search(system, written(world, tmp_path, seed), seed, 40.0)
         assert system.expect_log("Global initialisation done!")
     assert judge.found_at() - began < 25.0
+
+
+@pytest.mark.slow
+def test_a_robot_that_was_carried_away_is_found_again(tmp_path: Path) -> None:
+    """Within half a minute with recovery, at which the log says it; without, the log says what to do."""
+    files = written("lab", tmp_path)
+    for recovery, words in ((0.1, "it is searched everywhere"), (0.0, "call reinitialize_global_localization")):
+        with System(1) as system:
+            judge = Judge(system)
+            start(system, files, 1, recovery_alpha_fast=recovery, recovery_alpha_slow=0.001, **initial(files.start))
+            system.run(20.0)
+            at = system.node.get_clock().now().nanoseconds / 1e9
+            teleport = own_type("Teleport")
+            request = teleport.Request(robot="robot", x=7.0, y=7.0, theta=2.0)
+            assert system.call(teleport, "/world/teleport", request).success
+            assert "the robot may be elsewhere" in system.expect_log(words, within=15.0).message
+            if recovery:
+                system.run(40.0)
+                assert judge.found_at() - at < 30.0
+                assert judge.rms(at + 30.0)[0] < 0.1
 
 
 def test_the_pose_is_published_with_covariance_particles_and_transform(system: System, lab: Files) -> None:

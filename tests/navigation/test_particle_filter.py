@@ -126,18 +126,13 @@ def test_covariances_wrap_headings() -> None:
     assert covariance_about(Pose(0, 0, math.pi), poses, np.array([0.5, 0.5]))[2, 2] == pytest.approx(gap**2)
 
 
-def test_poses_at_random_are_added_when_scans_fit_worse() -> None:
-    particles = filter_of(FilterOptions(1000, 1000, recovery_alpha_slow=0.001, recovery_alpha_fast=0.2))
-    places = np.array([[50.0], [50.0]])
-
-    def lost_after(fit: float) -> int:
-        particles.weigh(np.full(1000, 60 * fit), 60)
-        particles.resample(places, 1.0)
-        return int((particles.poses[0] > 40).sum())
-
-    assert [lost_after(-0.7) for _ in range(5)] == [0] * 5
-    assert lost_after(-0.9) == 0  # a little worse is nothing
-    assert [lost_after(-3.0) for _ in range(10)][-1] > 500
+def test_some_particles_may_be_drawn_from_everywhere() -> None:
+    particles = filter_of()
+    particles.scatter_some(0.3, np.array([[50.0], [50.0]]), 1.0)
+    assert 250 < (particles.poses[0] > 40).sum() < 350
+    assert particles.is_spread()
+    particles.scatter_about(Pose(), np.diag([0.25, 0.25, 0.1]))
+    assert not particles.is_spread()
 
 
 def room() -> Grid:

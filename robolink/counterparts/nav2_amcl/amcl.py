@@ -35,12 +35,10 @@ SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FA
 
 MOST_WAITING = 10
 """Most scans that wait for the transform of their time."""
-SILENCE = 2.0
-"""Shortest time between two warnings of one kind, in seconds."""
+SILENCE, LONG_SILENCE = 2.0, 10.0
+"""Shortest times between two warnings of one kind, in seconds."""
 NO_SCAN = 15.0
 """Time without a scan after which there is a warning, in seconds."""
-POOR, POOR_SCANS = 0.5, 5
-"""Share of beams that fit to the map, and number of scans in a row with less than it, until there is a warning."""
 BACK = 1.0
 """Seconds by which stamps must go back for odometry to count as begun anew."""
 
@@ -65,7 +63,7 @@ class AmclNode(LifecycleNode):
         self._jumps: JumpHandle | None = None
         self._waiting: deque[tuple[LaserScan, Future[TransformStamped]]] = deque()
         self._scan_at = self._heard_at = self.get_clock().now()
-        self._poor = 0
+        self._searches = 0
         self.add_on_set_parameters_callback(self.on_set_parameters)
         self.add_post_set_parameters_callback(self.on_parameters)
 
@@ -83,6 +81,7 @@ class AmclNode(LifecycleNode):
             self.is_known, self.last_pose = False, None
         seed = values["random_seed"]
         own = self.context.time.random_ids(self.get_fully_qualified_name().encode()).getrandbits(63)
+        self._searches = 0
         self.localization = Localization(values.options(), np.random.default_rng(own if seed < 0 else seed))
         self._map_frame, self._odom_frame = values.frame("global_frame_id"), values.frame("odom_frame_id")
         self._base_frame = values.frame("base_frame_id")
@@ -242,7 +241,7 @@ class AmclNode(LifecycleNode):
         pose = placed_on(pose_of(message.pose.pose), self._driven_since(message))
         self.get_logger().info(f"Setting pose: {pose.x:.3f} {pose.y:.3f} {pose.theta:.3f}")
         self.localization.start_at(pose, messages.covariance_of(message))
-        self.is_known, self._is_set_late, self.last_pose, self._poor = True, False, message, 0
+        self.is_known, self._is_set_late, self.last_pose = True, False, message
 
     def _driven_since(self, message: PoseWithCovarianceStamped) -> Pose:
         """Return how far the robot has come by odometry since the time of a pose."""
@@ -262,7 +261,7 @@ class AmclNode(LifecycleNode):
             self.get_logger().error(f"Global localization is refused: {reason}")
             return response
         self.get_logger().info("Global initialisation done!")
-        self.is_known, self._poor = True, 0
+        self.is_known = True
         return response
 
     def on_nomotion_update(self, request: Empty.Request, response: Empty.Response) -> Empty.Response:
@@ -372,17 +371,23 @@ class AmclNode(LifecycleNode):
         if self._clouds is not None and self._clouds.get_subscription_count():
             now = self.get_clock().now().to_msg()
             self._clouds.publish(messages.cloud_of(localization.particles, self._map_frame, now))
-        self._note_fit(pose, localization.fit)
+        self._tell_fit(pose, localization)
 
-    def _note_fit(self, pose: Pose, fit: float) -> None:
-        """Warn if scans do not fit to the map for a while: the robot may have been carried away."""
-        self._poor = self._poor + 1 if fit < POOR else 0
-        if self._poor >= POOR_SCANS:
-            self._warn(
-                f"only {100 * fit:.0f} % of the scan fits to the map from ({pose.x:.2f}, {pose.y:.2f}): the robot may"
-                " be elsewhere. Set the pose, call reinitialize_global_localization, or set recovery_alpha_slow"
-                " (0.001) and recovery_alpha_fast (0.1)"
-            )
+    def _tell_fit(self, pose: Pose, localization: Localization) -> None:
+        """Warn if scans fit badly: the robot may have been carried away."""
+        searches, self._searches = localization.searches - self._searches, localization.searches
+        if not searches and not localization.seems_lost:
+            return
+        act = (
+            "it is searched everywhere"
+            if searches
+            else "set the pose, call reinitialize_global_localization, or set recovery_alpha_fast (0.1)"
+        )
+        self.get_logger().warning(
+            f"only {100 * localization.fit:.0f} % of the scan fits to the map from ({pose.x:.2f}, {pose.y:.2f}),"
+            f" usually {100 * localization.watch.usual:.0f} %: the robot may be elsewhere; {act}",
+            throttle_duration_sec=LONG_SILENCE,
+        )
 
     def _broadcast(self, scan: LaserScan) -> None:
         """Publish the transform from map to odometry, which holds for a while beyond the scan."""

@@ -140,6 +140,8 @@ class Parameters:
             update_min_d=self["update_min_d"],
             update_min_a=self["update_min_a"],
             resample_interval=self["resample_interval"],
+            recovery_alpha_slow=self["recovery_alpha_slow"],
+            recovery_alpha_fast=self["recovery_alpha_fast"],
         )
 
     def _particles(self) -> FilterOptions:
