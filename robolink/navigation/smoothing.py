@@ -59,10 +59,13 @@ def _farthest(points: Floats, weights: Weights, costs: Floats, spent: Floats, fi
 
 def _line_cost(start: Floats, end: Floats, weights: Weights, costs: Floats) -> float:
     """Return the cost of a straight line; infinity if it crosses a blocked cell."""
-    length = math.dist(start, end)
-    shares = np.linspace(0.0, 1.0, math.ceil(length * SAMPLES) + 2)
-    line = start + (end - start) * shares[:, None]
-    return length * float(costs[_weights_at(line, weights)].mean())
+    (x, y), (to_x, to_y) = map(float, start), map(float, end)
+    length = math.hypot(to_x - x, to_y - y)
+    count = math.ceil(length * SAMPLES) + 1
+    shares = np.arange(count + 1) / count
+    # Both ends are on the grid, and so all of the line is.
+    rows, columns = (y + (to_y - y) * shares).astype(np.intp), (x + (to_x - x) * shares).astype(np.intp)
+    return length * float(costs[weights[rows, columns]].sum()) / (count + 1)
 
 
 def _weights_at(points: Floats, weights: Weights) -> npt.NDArray[np.uint8]:
