@@ -306,3 +306,20 @@ def test_a_pose_is_sent_in_the_frame_map_whatever_is_fixed(browser: Browser, key
         if isinstance(found, PoseWithCovarianceStamped):
             assert {i: each for i, each in enumerate(found.pose.covariance) if each} == {0: 0.25, 7: 0.25, 35: 0.0685}
             assert not browser.js(f"{WORLD}.scene.shows('/initialpose')"), "the estimate takes its place"
+
+
+def test_a_goal_that_fails_is_told_and_taken_away(browser: Browser) -> None:
+    with opened(browser, "world") as page:
+        navigate(page.node)
+        logger = page.node.get_logger()
+        logger.error("an old error")
+        page.node.create_subscription(PoseStamped, "goal_pose", lambda _: logger.error("it is in a wall"), 10)
+        look(page)
+        browser.wait("robolink.connection.graph.subscribed.get('/goal_pose')?.length")
+        browser.click(".tool-goal")
+        browser.drag(page.world(4.0, 2.0), page.world(4.0, 3.0))
+        browser.wait(f"{WORLD}.scene.layers.has('/goal_pose') && !{WORLD}.scene.layers.get('/goal_pose').layer.reached")
+        with spun(page.node) as executor:
+            told = "document.querySelector('.note.error')?.textContent"
+            spin_until(executor, lambda: browser.js(told) == "it is in a wall")
+        assert browser.js(f"{WORLD}.scene.layers.get('/goal_pose').layer.reached")

@@ -14,6 +14,7 @@ const TOOLS = {
   initial: { type: "geometry_msgs/msg/PoseWithCovarianceStamped", name: "initialpose", text: "pose" },
 };
 const WIDTH = 44, HEIGHT = 24, MIDDLE = HEIGHT / 2; // of a picture in the list of layers
+const ERROR = 40; // level of a log
 const COVARIANCE = new Array(36).fill(0);
 COVARIANCE[0] = COVARIANCE[7] = 0.25; // as rviz has it
 COVARIANCE[35] = 0.0685;
@@ -53,6 +54,7 @@ class World {
   close() {
     for (const off of this.offs) off();
     this.element.closest(".panel")?.removeEventListener("keydown", this.keys);
+    this.watched?.close();
     this.scene.close();
   }
 
@@ -249,6 +251,18 @@ class World {
     return { fixed: "map", x: pose.x, y: pose.y, yaw: yawOf(pose) };
   }
 
+  /** Show the error that ends a goal, as the node that it was sent to logs it: until a robot has come there. */
+  _watch(topic, since) {
+    const names = this.app.connection.graph.subscribed.get(topic).map((name) => name.slice(1).replaceAll("/", ".")), { layer } = this.scene.layers.get(topic);
+    this.watched?.close();
+    this.watched = this.app.listen("/rosout", { every: (view, _, source) => {
+      const { level, name, msg, stamp } = source.decode(view) ?? {};
+      if (!(level >= ERROR) || !names.includes(name) || stamp.sec + stamp.nanosec / 1e9 < since / 1000 || layer.reached) return;
+      this.app.tell(msg, true);
+      layer.reached = this.scene.dirty = true;
+    } });
+  }
+
   _send() {
     const { type } = TOOLS[this.tool], topic = this.target.value, { fixed, x, y, yaw } = this._inMap(this.scene.wanted);
     const at = this.app.clock(), sec = Math.floor(at / 1000);
@@ -259,6 +273,7 @@ class World {
     else if (isHeard) {
       this.app.tell(this.words("world.sent", { topic, x: x.toFixed(2), y: y.toFixed(2), degrees: degrees(yaw).slice(0, -1), frame: fixed }));
       this.scene.sent(topic, type, message);
+      if (isGoal(topic)) this._watch(topic, at);
     } else this.app.tell(this.words(isGoal(topic) ? "world.unheard.goal" : "world.unheard", { topic }), true);
     this._use(null);
   }
