@@ -80,7 +80,7 @@ def test_a_student_sees_why_saves_and_goes_on(browser: Browser, tmp_path: Path) 
         browser.wait(f"{FINDINGS}.length == 2")
         assert browser.js(FINDINGS) == ["✓ it drives while the way is free", "✗ it drove 3.8 m into the wall"]
         assert browser.js(CHOSEN) == "stop"
-        assert browser.js("document.querySelector('.learn nav p').textContent") == "7 of 28 exercises done"
+        assert browser.js("document.querySelector('.learn nav p').textContent") == "7 of 31 exercises done"
         browser.wait(f"{FILM}.at > 1")
         assert browser.js(f"{PIXELS}('bad')") == 0
         way = browser.js(f"{PIXELS}('accent')")
@@ -182,7 +182,7 @@ def test_by_keyboard_in_portuguese_in_the_dark_and_on_a_phone(browser: Browser, 
             browser.resize(1280, 720)
         browser.click("#language")
         browser.wait("document.getElementById('stop').textContent == 'STOP'")
-        browser.wait("document.querySelector('.learn nav p')?.textContent == '1 of 28 exercises done'")
+        browser.wait("document.querySelector('.learn nav p')?.textContent == '1 of 31 exercises done'")
         browser.wait("document.querySelector('.learn h3').textContent == '02_hello.py: A first node'")
         page.picture("learn_english")
         assert not browser.js("globalThis.hacked ?? false")

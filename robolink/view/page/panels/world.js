@@ -326,9 +326,8 @@ const FORMS = {
     arrow(context, 7, MIDDLE, 0, 30);
     cased(context, colours, colour, 3);
   },
-  swarm(context, colour) {
-    context.fillStyle = colour;
-    for (const [x, y] of [[22, MIDDLE], [17, 8], [26, 7], [29, 14], [16, 15], [23, 18], [11, 11], [35, 10]]) context.fillRect(x - 1.5, y - 1.5, 3, 3);
+  swarm(context, colour, { colours }) {
+    dots(context, [[22, MIDDLE], [16, 8], [27, 7], [30, 15], [15, 16], [23, 19], [9, 11], [36, 10]], colours.halo, colour, 1);
   },
   tf(context, _, { colours }, names = ["axis-x", "axis-y"]) {
     names.forEach((name, i) => {
