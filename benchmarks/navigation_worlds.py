@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import multiprocessing
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -51,6 +52,8 @@ def main() -> None:
     numbers = requested.only or (WORLDS[:6] if requested.own_map else WORLDS)
     jobs = [(number, requested.parameters, requested.own_map) for number in numbers]
     lives = []
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):  # of the processes, as `robolink simulate` sets them
+        os.environ.setdefault(name, "1")
     with multiprocessing.get_context("spawn").Pool(requested.jobs, maxtasksperchild=4) as pool:
         for number, life in pool.imap(tried, jobs):
             print(line(number, life), flush=True)

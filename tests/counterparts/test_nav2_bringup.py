@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from robolink.action import ActionClient
 from robolink.companions.ament_index import get_package_share_directory
 from robolink.geometry.plane import Pose
+from robolink.interfaces.action_msgs.msg import GoalStatus
 from robolink.interfaces.geometry_msgs.msg import Twist, Vector3
+from robolink.interfaces.nav2_msgs.action import NavigateToPose
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.launch import plan, shared_process
 from robolink.launch.lookup import find, parameter_file
@@ -66,3 +69,17 @@ def test_map_it_makes_a_map_while_somebody_drives(system: System) -> None:
 def known(system: System) -> int:
     """Count the cells of the map that are known."""
     return sum(each >= 0 for each in system.expect("/map", type=OccupancyGrid).data)
+
+
+@pytest.mark.processes
+@pytest.mark.slow
+def test_navigate_drives_in_processes_and_real_time() -> None:
+    with System(seed=1, transport="zenoh") as system:
+        system.launch("navigate")
+        system.expect_log("Managed nodes are active", within=40.0)
+        system.expect("/amcl_pose", within=20.0)
+        client = ActionClient(system.node, NavigateToPose, "navigate_to_pose")
+        assert client.wait_for_server(timeout_sec=10.0)
+        goal = NavigateToPose.Goal(pose=pose_message(Pose(2.0, 4.0)))
+        handle = system.result(client.send_goal_async(goal), within=20.0)
+        assert system.result(handle.get_result_async(), within=40.0).status == GoalStatus.STATUS_SUCCEEDED
