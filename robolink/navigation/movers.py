@@ -27,7 +27,7 @@ _LOST = 0.5
 _GAIN, _SPEED_GAIN = 0.5, 0.25
 """Gains of the filter (alpha-beta) for the place and for the speed."""
 _SEEN, _WAY, _SLOWEST = 4, 0.12, 0.12
-"""How often a thing was seen, metres that it has moved, and its speed in m/s, before it counts as moving."""
+"""Looks at a thing, metres that it has moved, and its speed in m/s, from which on it counts as moving."""
 
 
 class Mover(NamedTuple):

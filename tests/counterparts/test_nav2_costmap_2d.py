@@ -97,8 +97,22 @@ def test_a_map_is_inflated_and_published(system: System) -> None:
     assert (found[10, 20], found[10, 21], found[0, 0]) == (254, 253, 255)
     assert found[10, 22] == int(252 * math.exp(-10 * (0.2 - 0.12 * math.cos(math.pi / 16))))
     assert (heard[-1].header.frame_id, raw[-1].metadata.layer) == ("map", "master")
-    assert len(heard) == 5  # each 0.2 s, but nothing is sent to nobody
+    assert len(heard) == 6  # with the map, and then each 0.2 s
     system.expect_log("Resizing costmap to 30 X 20 at 0.1")
+
+
+def test_a_map_of_another_size_leaves_no_moment_without_costs(system: System) -> None:
+    node = system.start("nav2_costmap_2d nav2_costmap_2d", parameters=PLAIN | {"update_frequency": 0.5})
+    assert change(system, Transition.TRANSITION_CONFIGURE)
+    assert change(system, Transition.TRANSITION_ACTIVATE)
+    transform(system, "base_link", "map", 1.0, 1.0)
+    for size in (20, 30):
+        cells = np.zeros((size, size))
+        cells[15, 15] = 100
+        publish_map(system, cells)
+        system.run(0.01)
+        assert node.is_current()
+        assert costs(system)[15, 15] == 254
 
 
 def test_scans_mark_and_free(system: System) -> None:

@@ -153,7 +153,8 @@ class Costmap2DROS(LifecycleNode):
     def clear(self) -> None:
         """Forget what sensors saw, and write the costs anew."""
         self._costmap.clear()
-        self._renew()
+        self._forgive()
+        self.renew()
 
     def clear_square(self, x: float, y: float, side: float, *, inside: bool) -> None:
         """Forget what sensors saw in a square of the costmap, or outside of it, and write the costs anew.
@@ -169,11 +170,16 @@ class Costmap2DROS(LifecycleNode):
             return
         square = self._costmap.square(x, y, side)
         self._costmap.clear(~square if inside else square)
-        self._renew()
+        self._forgive()
+        self.renew()
 
-    def _renew(self) -> None:
+    def _forgive(self) -> None:
+        """Count from now on how long sensors are silent."""
         for each in self._inputs:
             each.reset()
+
+    def renew(self) -> None:
+        """Update at once, since the costs are void: nobody may take an empty costmap for a free one meanwhile."""
         self._is_updated = False
         if self._timer is not None:
             self.update()

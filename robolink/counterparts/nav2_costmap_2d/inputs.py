@@ -86,6 +86,7 @@ class MapInput:
             self._look_at_frame()
         self._take(grid)
         self.layer.take(grid)
+        self._node.renew()
 
     def _look_at_frame(self) -> None:
         frame = self._node.global_frame
