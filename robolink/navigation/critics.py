@@ -18,10 +18,8 @@ from robolink.navigation.footprint import FREE, INSCRIBED, LETHAL, UNKNOWN, high
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.local_path import LocalPath
 from robolink.navigation.movers import Mover
+from robolink.navigation.singles import F, Singles, summed
 
-Singles = npt.NDArray[np.float32]
-
-F = np.float32
 TURN = F(2 * math.pi)
 _NEARER = 0.01
 """Metres by which a robot that is too near to an obstacle may get nearer yet, on its way out."""
@@ -175,7 +173,7 @@ class PathAlignCritic(Critic):
         if blocked > 2 and blocked > self.max_path_occupancy_ratio * batch.furthest:
             return None
         step = max(1, self.trajectory_point_step)
-        ways = np.cumsum(np.abs(batch.v) * F(batch.dt), axis=0, dtype=F)[step - 1 :: step]
+        ways = summed(np.abs(batch.v[: len(batch.v) // step * step]) * F(batch.dt))[step - 1 :: step]
         index = np.minimum((ways * F(1 / batch.path.spacing) + F(0.5)).astype(np.intp), batch.furthest)
         dx = batch.x[step - 1 :: step] - batch.path.x.astype(F).take(index)
         dy = batch.y[step - 1 :: step] - batch.path.y.astype(F).take(index)

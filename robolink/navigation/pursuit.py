@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from robolink.geometry.plane import Pose, wrapped
-from robolink.navigation.critics import F, Surroundings, costs_at, obstructed
+from robolink.navigation.critics import Surroundings, costs_at, obstructed
 from robolink.navigation.footprint import FREE, INSCRIBED, LETHAL, UNKNOWN, highest_costs
 from robolink.navigation.grid import Floats
 from robolink.navigation.local_path import LocalPath
 from robolink.navigation.rollouts import Command
+from robolink.navigation.singles import F
 
 _STEP = 0.05
 """Seconds between two looks for a collision ahead, at most."""

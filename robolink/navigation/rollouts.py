@@ -14,10 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from robolink.geometry.plane import Pose
-from robolink.navigation.critics import USUAL, Batch, Critic, F, Singles, Surroundings, costs_at, obstructed
+from robolink.navigation.critics import USUAL, Batch, Critic, Surroundings, costs_at, obstructed
 from robolink.navigation.footprint import INSCRIBED, UNKNOWN
 from robolink.navigation.grid import Floats
 from robolink.navigation.local_path import LocalPath
+from robolink.navigation.singles import F, Singles, cos_and_sin, decayed, summed
 
 _SMOOTHING = tuple(F(each / 231) for each in (-21, 14, 39, 54, 59, 54, 39, 14, -21))
 """Weights of nine neighbours: a parabola is fitted to them (Savitzky and Golay 1964)."""
@@ -41,7 +42,7 @@ class Options:
     With `regenerate_noises` new ones are drawn in each step. `min_turning_r` in metres is for robots that steer.
     """
 
-    batch_size: int = 600
+    batch_size: int = 400
     time_steps: int = 28
     model_dt: float = 0.1
     iteration_count: int = 1
@@ -111,6 +112,7 @@ class Rollouts:
         """Forget the sequence: the next step begins with the robot's present speed."""
         self._sequence: Singles = np.zeros((self.options.time_steps, 2), F)
         self._past: Singles = np.zeros((_MARGIN, 2), F)
+        self._trajectory: Floats = np.zeros((1, 3))
         self._is_fresh = True
 
     def step(
@@ -162,15 +164,17 @@ class Rollouts:
         if collides.all():
             return False
         total -= total.min()
-        weights = np.exp(total * F(-1 / options.temperature))
+        weights = decayed(total * F(1 / options.temperature))
         good = np.flatnonzero(weights >= _WEIGHTY)
         weights = weights[good] / weights[good].sum(dtype=F)
         drawn = self._unclipped(v, good), w[:, good]
         mean = np.stack([(each * weights).sum(axis=1, dtype=F) for each in drawn], axis=1)
         self._sequence = self._feasible(self._smoothed(mean), speed)
+        self._trajectory = _led(pose, self._sequence, options.model_dt)
         if self._collides(pose, around):  # two ways round an obstacle have a mean that leads into it
             best = int(total.argmin())
             self._sequence = np.stack([v[:, best], w[:, best]], axis=1)
+            self._trajectory = _led(pose, self._sequence, options.model_dt)
         return True
 
     def _unclipped(self, v: Singles, good: npt.NDArray[np.intp]) -> Singles:
@@ -185,7 +189,7 @@ class Rollouts:
 
     def _collides(self, pose: Pose, around: Surroundings) -> bool:
         """Return whether the sequence leads into an obstacle."""
-        x, y, _ = integrated(pose, self._sequence[:, :1], self._sequence[:, 1:], self.options.model_dt)
+        x, y = self._trajectory[:, 0].astype(F), self._trajectory[:, 1].astype(F)
         return bool(obstructed(around.costs, pose, x, y, costs_at(around.costs, x, y)).any())
 
     def _judged(self, batch: Batch, *, fan: int) -> tuple[Singles, npt.NDArray[np.bool_]]:
@@ -280,26 +284,24 @@ class Rollouts:
 
     def _feasible(self, sequence: Singles, speed: tuple[float, float]) -> Singles:
         """Return a sequence within the limits of speed and acceleration, from the present speed on."""
-        sequence = self._within(sequence)
-        (rise,), (fall,) = (each.T for each in self._rates())
-        last = np.array(speed, F)
-        for row in sequence:
-            np.clip(row, last - fall, last + rise, out=row)
-            last = row
-        return sequence
+        options, dt = self.options, self.options.model_dt
+        rise, fall, turn = options.ax_max * dt, abs(options.ax_min) * dt, options.az_max * dt
+        v, w = map(float, speed)
+        found = []
+        for next_v, next_w in self._within(sequence).tolist():
+            v = min(max(next_v, v - fall), v + rise)
+            w = min(max(next_w, w - turn), w + turn)
+            found.append((v, w))
+        return np.array(found, F)
 
     def _command(self, pose: Pose, is_valid: bool) -> Command:
-        options = self.options
-        v, w = self._sequence[:, :1], self._sequence[:, 1:]
-        x, y, theta = integrated(pose, v, w, options.model_dt)
-        trajectory = np.concatenate((x, y, theta), axis=1).astype(np.float64)
         if not is_valid:
             self.reset()
-            return Command(0.0, 0.0, False, trajectory)
+            return Command(0.0, 0.0, False, np.array([pose], np.float64))
         first = self._sequence[0].copy()
         self._past = np.concatenate((self._past[1:], first[None]))
         self._shift()
-        return Command(float(first[0]), float(first[1]), True, trajectory)
+        return Command(float(first[0]), float(first[1]), True, self._trajectory)
 
     def _shift(self) -> None:
         """Move the sequence on by the period of control, which may be less than a step of the model."""
@@ -320,12 +322,22 @@ def _fan(options: Options) -> Singles:
 
 def integrated(pose: Pose, v: Singles, w: Singles, dt: float) -> tuple[Singles, Singles, Singles]:
     """Return where speeds lead: x, y and theta after each step, of the shape of `v`, in which steps are rows."""
-    theta = np.cumsum(w * F(dt), axis=0, dtype=F)
-    theta += F(math.remainder(pose.theta, 2 * math.pi))
-    middle = theta - w * F(dt / 2)
+    theta = w * F(dt)
+    middle = theta * F(-0.5)
+    middle += summed(theta, math.remainder(pose.theta, math.tau))
+    cos, sin = cos_and_sin(middle)
     way = v * F(dt)
-    x = np.cumsum(way * np.cos(middle), axis=0, dtype=F)
-    y = np.cumsum(way * np.sin(middle), axis=0, dtype=F)
-    x += F(pose.x)
-    y += F(pose.y)
-    return x, y, theta
+    cos *= way
+    sin *= way
+    return summed(cos, pose.x), summed(sin, pose.y), theta
+
+
+def _led(pose: Pose, sequence: Singles, dt: float) -> Floats:
+    """Return the poses to which one sequence leads, of shape (steps, 3)."""
+    x, y, theta = pose
+    poses = []
+    for v, w in sequence.tolist():
+        middle = theta + w * dt / 2
+        x, y, theta = x + v * dt * math.cos(middle), y + v * dt * math.sin(middle), theta + w * dt
+        poses.append((x, y, theta))
+    return np.array(poses)

@@ -18,6 +18,7 @@ from robolink.counterparts.nav2_controller.following import (
     fresh_transform,
     path_message,
 )
+from robolink.counterparts.nav2_controller.pace import Pace
 from robolink.counterparts.nav2_controller.surroundings import MoverWatch, Outline
 from robolink.counterparts.nav2_costmap_2d.costmap_2d_ros import Costmap2DROS
 from robolink.counterparts.nav2_util.options import PluginError, names_of
@@ -232,7 +233,13 @@ class ControllerServer(LifecycleNode):
         """Drive along the path of the goal; True at its end, False if it was cancelled. Raises DriveError."""
         drive = self._drive(server.goal, None)
         period = 1.0 / self.get_parameter("controller_frequency").value
-        due = self._now()
+        pace = Pace(self, period, self._group)
+        try:
+            return await self._go_on(server, drive, pace)
+        finally:
+            pace.destroy()
+
+    async def _go_on(self, server: SimpleActionServer, drive: Drive, pace: Pace) -> bool:
         while True:
             if server.is_cancel_requested:
                 self.get_logger().info("Cancellation was successful. Stopping the robot.")
@@ -246,8 +253,7 @@ class ControllerServer(LifecycleNode):
             if self._step(server, drive):
                 self.get_logger().info("Reached the goal!")
                 return True
-            due = max(due + period, self._now())
-            await pause(self, due - self._now(), self._group)
+            await pace.next()
 
     async def _wait_for_costmap(self) -> None:
         """Wait, at a standstill, until the costmap is current. Raises DriveError after the timeout."""
