@@ -36,7 +36,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (["gazebo_ros", "spawn_entity.py"], "'robolink run world' simulates a robot"),
         (["gazebo_ros"], "'robolink run world' simulates a robot"),
         (["controller_manager", "spawner"], "which are C++; 'robolink run world'"),
-        (["nav2-smoother", "smoother_server"], "'robolink launch navigate'"),
+        (["nav2-velocity-smoother", "velocity_smoother"], "'robolink launch navigate'"),
         (["cartographer_ros", "cartographer_node"], "on a machine with ROS 2"),
         (["moveit_ros_move_group", "move_group"], "on a machine with ROS 2"),
     ],

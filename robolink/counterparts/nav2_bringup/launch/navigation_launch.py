@@ -25,6 +25,7 @@ ARGUMENTS = (
 """Names, defaults and meanings of the arguments."""
 SERVERS = {
     "controller_server": ("nav2_controller", "nav2_controller::ControllerServer"),
+    "smoother_server": ("nav2_smoother", "nav2_smoother::SmootherServer"),
     "planner_server": ("nav2_planner", "nav2_planner::PlannerServer"),
     "behavior_server": ("nav2_behaviors", "behavior_server::BehaviorServer"),
     "bt_navigator": ("nav2_bt_navigator", "nav2_bt_navigator::BtNavigator"),
