@@ -79,8 +79,9 @@ def test_the_pose_is_published_with_covariance_particles_and_transform(system: S
     assert 0.0 < covariance[35] < 0.05
     assert covariance[5] == covariance[30]
     assert not covariance[14]
-    transform = system.expect("tf", lambda tf: tf.transforms[0].header.frame_id == "map").transforms[0]
+    first, transform = system.expect("tf", lambda tf: tf.transforms[0].header.frame_id == "map").transforms
     assert transform.child_frame_id == "odom"
+    assert first.header.stamp == pose.header.stamp  # so that the pose is known at once
     assert transform.header.stamp.sec + transform.header.stamp.nanosec * 1e-9 > system.time  # it holds for a second
     system.run(0.01)
     assert clouds[-1].header.frame_id == "map"

@@ -64,6 +64,8 @@ class AmclNode(LifecycleNode):
         self._waiting: deque[tuple[LaserScan, Future[TransformStamped]]] = deque()
         self._scan_at = self._heard_at = self.get_clock().now()
         self._searches = 0
+        self._is_broadcast = False
+        """True once the transform was published."""
         self.add_on_set_parameters_callback(self.on_set_parameters)
         self.add_post_set_parameters_callback(self.on_parameters)
 
@@ -112,7 +114,7 @@ class AmclNode(LifecycleNode):
         """Begin to localize; the first time from where the parameters say, else from where it was."""
         self.get_logger().info("Activating")
         result = super().on_activate(state)
-        self._heard_at = self.get_clock().now()
+        self._heard_at, self._is_broadcast = self.get_clock().now(), False
         begins = self.localization is not None and self.localization.estimate is None
         if self._is_set_late and self.last_pose is not None:
             self._start(self.last_pose)
@@ -395,9 +397,12 @@ class AmclNode(LifecycleNode):
         if origin is None or not is_finite(origin) or not self.values["tf_broadcast"]:
             return
         later = Time.from_msg(scan.header.stamp) + Duration(seconds=self.values["transform_tolerance"])
+        # The first time for the scan itself, too: else nobody knows the pose until then.
+        stamps = [later.to_msg()] if self._is_broadcast else [scan.header.stamp, later.to_msg()]
         self._broadcaster.sendTransform(
-            messages.transform_of(origin, self._map_frame, self._odom_frame, later.to_msg())
+            [messages.transform_of(origin, self._map_frame, self._odom_frame, each) for each in stamps]
         )
+        self._is_broadcast = True
 
     def on_look(self) -> None:
         """Warn if no scan comes."""
