@@ -6,7 +6,7 @@ averaged is the share of the beams that end near a wall of the map, as seen from
 
 from __future__ import annotations
 
-USUAL, POOR = 0.8, 0.5
+USUAL, POOR = 0.75, 0.5
 """Scans fit badly below these shares: of the usual fit, and of all beams."""
 FAST, SLOW = 0.2, 0.01
 """Rates of the averages where none are given."""

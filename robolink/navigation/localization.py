@@ -20,7 +20,7 @@ from robolink.geometry.plane import Pose, placed_on, seen_from, wrapped
 from robolink.navigation.fit_watch import FitWatch
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.likelihood_field import UNITS, LikelihoodField, SensorModel
-from robolink.navigation.motion_models import Alphas, MotionModel, move_differential
+from robolink.navigation.motion_models import Alphas, MotionModel, move_differential, roughen
 from robolink.navigation.particle_filter import Estimate, FilterOptions, ParticleFilter
 
 MOST_FIELDS = 4
@@ -29,6 +29,8 @@ FASTEST = 10.0
 """Speed in m/s, and in rad/s, above which odometry has jumped."""
 NEAR = 2.0
 """Distance from a wall, in cells of the map, within which a beam's end fits to the map."""
+AT_REST = (0.02, 0.01)
+"""Way in metres and turn in radians up to which a robot rests; its particles are scattered by as much."""
 ANYWHERE = 0.7
 """Share of the particles that are drawn anywhere when scans fit badly, if recovery is requested."""
 
@@ -162,6 +164,8 @@ class Localization:
         if self._updated_at is not None:
             motion, alphas = self._options.motion, self._options.alphas
             self.particles.move(partial(_moved, motion, self._updated_at, odometry, alphas))
+            if not _is_beyond(self._updated_at, odometry, *AT_REST):
+                self.particles.move(lambda poses, random: roughen(poses, *AT_REST, random))
         self._updated_at, self._due[beams.scanner], self.is_forced = odometry, False, False
         field = self._field(beams.range_max)
         self._weigh(field, beams)

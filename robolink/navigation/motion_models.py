@@ -72,6 +72,18 @@ def move_omni(poses: Floats, before: Pose, after: Pose, alphas: Alphas, random: 
     wrap_headings(poses)
 
 
+def roughen(poses: Floats, far: float, turned: float, random: np.random.Generator) -> None:
+    """Scatter poses by standard deviations in metres and radians, in place of a motion.
+
+    Without it resampling makes the particles of a robot at rest one and the same (Gordon, Salmond, Smith 1993).
+    """
+    error = random.standard_normal((3, poses.shape[1]))
+    poses[0] += error[0] * far
+    poses[1] += error[1] * far
+    poses[2] += error[2] * turned
+    wrap_headings(poses)
+
+
 def _least_turn(angle: float) -> float:
     """Return how far a turn is from none, or from one to drive backwards."""
     return min(abs(angle), math.pi - abs(angle))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,6 +43,14 @@ BACK = 1.0
 """Seconds by which stamps must go back for odometry to count as begun anew."""
 
 
+class Waiting(NamedTuple):
+    """A scan that waits for odometry's transform of its time since `since`, by the node's clock."""
+
+    scan: LaserScan
+    future: Future[TransformStamped]
+    since: Time
+
+
 class AmclNode(LifecycleNode):
     """A managed node that localizes a robot on a map. `options` are those of `Node`."""
 
@@ -61,7 +69,7 @@ class AmclNode(LifecycleNode):
         self._poses: LifecyclePublisher[PoseWithCovarianceStamped] | None = None
         self._clouds: LifecyclePublisher[ParticleCloud] | None = None
         self._jumps: JumpHandle | None = None
-        self._waiting: deque[tuple[LaserScan, Future[TransformStamped]]] = deque()
+        self._waiting: deque[Waiting] = deque()
         self._scan_at = self._heard_at = self.get_clock().now()
         self._searches = 0
         self._is_broadcast = False
@@ -287,15 +295,21 @@ class AmclNode(LifecycleNode):
             self._warn(f"refused a scan: {reason}")
             return
         future = self._buffer.wait_for_transform_async(self._odom_frame, self._base_frame, scan.header.stamp)
-        self._waiting.append((scan, future))
-        if len(self._waiting) > MOST_WAITING:
-            late, never = self._waiting.popleft()
-            never.cancel()
-            self._warn(f"dropped a scan: {self._reason(late)}")
+        self._drop_late()
+        self._waiting.append(Waiting(scan, future, self._heard_at))
         if future.done():
             self._take()
         else:
             future.add_done_callback(lambda _: self._take())
+
+    def _drop_late(self) -> None:
+        """Drop scans that have waited too long, or that are too many."""
+        patience = self.values["transform_tolerance"] * 1e9
+        for each in list(self._waiting):
+            if (self._heard_at - each.since).nanoseconds > patience or len(self._waiting) >= MOST_WAITING:
+                self._waiting.remove(each)
+                each.future.cancel()
+                self._warn(f"dropped a scan: {self._reason(each.scan)}")
 
     def _reason(self, scan: LaserScan) -> str:
         """Return why odometry's transform of a scan's time is not there."""
@@ -305,18 +319,17 @@ class AmclNode(LifecycleNode):
 
     def _forget_waiting(self) -> None:
         while self._waiting:
-            self._waiting.popleft()[1].cancel()
+            self._waiting.popleft().future.cancel()
 
     def _take(self) -> None:
         """Use the scans whose transforms have come."""
         for each in list(self._waiting):
-            scan, future = each
-            if future.done():
+            if each.future.done():
                 self._waiting.remove(each)
-                if future.exception() is not None:
-                    self._warn(f"dropped a scan: {self._reason(scan)}")
-                elif (found := future.result()) is not None and self._is_active():
-                    self._use(scan, messages.plane_pose(found))
+                if each.future.exception() is not None:
+                    self._warn(f"dropped a scan: {self._reason(each.scan)}")
+                elif (found := each.future.result()) is not None and self._is_active():
+                    self._use(each.scan, messages.plane_pose(found))
 
     def _use(self, scan: LaserScan, odometry: Pose) -> None:
         """Use a scan that was taken at a pose of odometry."""
