@@ -66,6 +66,7 @@ class Options(NamedTuple):
     loop_search_space_smear_deviation: float = 0.03
     coarse_search_angle_offset: float = 0.349
     coarse_angle_resolution: float = 0.0349
+    use_response_expansion: bool = True
     resolution: float = 0.05
     min_pass_through: int = 2
     occupancy_threshold: float = 0.1
@@ -161,7 +162,8 @@ class Mapper:
         match = self._matched(keyframe, guess, spread, self._buffer())
         self._odometry = odometry
         if self._is_strange(match, keyframe, math.hypot(moved.x, moved.y)):
-            return self._sought(keyframe, match._replace(pose=guess))
+            alone = Match(guess, match.response, spread)
+            return self._rejoined(keyframe, alone) or self._sought(keyframe, alone)
         return self._added(keyframe, match)
 
     def _has_moved(self, moved: Pose) -> bool:
@@ -216,12 +218,16 @@ class Mapper:
 
     def _anchored(self, keyframe: Keyframe, match: Match) -> Fit:
         """Add a keyframe that does not follow the last one, tied to those around it."""
-        nearest = int(np.hypot(*(self.graph.poses[:, :2] - match.pose[:2]).T).argmin())
+        nearest = self._nearest(match.pose)[0]
         self._strange, self._odd_way, self._first = 0, 0.0, len(self.keyframes)
         fit = self._added(keyframe, match, step=_BREAK)
-        source = self.graph.pose(nearest)
-        self.graph.link(nearest, len(self.keyframes) - 1, seen_from(source, match.pose), _turned(match, source))
+        self._link(nearest, match)
         return fit
+
+    def _link(self, source: int, match: Match) -> None:
+        """Tie the last keyframe to an earlier one, by a match of it."""
+        base = self.graph.pose(source)
+        self.graph.link(source, len(self.keyframes) - 1, seen_from(base, match.pose), _turned(match, base))
 
     def _added(self, keyframe: Keyframe, match: Match, step: Floats | None = None) -> Fit:
         """Add a keyframe to the map, and close a loop if there is one."""
@@ -253,12 +259,22 @@ class Mapper:
         if not given.use_scan_matching or len(keyframe.points) < FEWEST:
             return alone
         reach = given.correlation_search_space_dimension / 2
+        found = self._searched(keyframe, guess, numbers, reach)
+        at_border = max(abs(found.pose.x - guess.x), abs(found.pose.y - guess.y)) > 0.9 * reach
+        if given.use_response_expansion and (at_border or found.response < _STRANGE[0]):
+            wider = self._searched(keyframe, guess, numbers, 3.0 * reach)
+            found = wider if wider.response > found.response + 0.05 else found
+        if found.response < given.link_match_minimum_response_fine:
+            return alone._replace(response=found.response)
+        return blended(found, guess, spread)
+
+    def _searched(self, keyframe: Keyframe, guess: Pose, numbers: list[int], reach: float) -> Match:
+        """Return the best match of a scan onto keyframes, up to `reach` metres from a guess in x and y."""
+        given = self.options
         field = self._field(numbers, guess, keyframe, reach)
-        window = Window(reach, given.coarse_search_angle_offset, given.coarse_angle_resolution / 4)
+        window = Window(reach, given.coarse_search_angle_offset, given.coarse_angle_resolution / 4, (16, 4, 1))
         found = field.search(keyframe.points, guess, window)
-        if found is None or found[1] < given.link_match_minimum_response_fine:
-            return alone._replace(response=found[1] if found else 0.0)
-        return blended(refined(field, keyframe.scan, found[0]), guess, spread)
+        return refined(field, keyframe.scan, found[0] if found else guess)
 
     def _field(self, numbers: list[int], guess: Pose, keyframe: Keyframe, reach: float, *, loop: bool = False) -> Field:
         given = self.options
@@ -303,6 +319,23 @@ class Mapper:
             for right in range(-2, 3):
                 found |= _values(padded, points + np.array([right, up]) * padded.resolution) == 100
         return found
+
+    def _rejoined(self, keyframe: Keyframe, guess: Match) -> Fit | None:
+        """Add a keyframe that old ones explain where the last ones do not; None if they do not, either.
+
+        The wheels slipped farther than a match looks; or a lidar that looks ahead only turns to walls that the last
+        keyframes have not seen, and the map has drifted since the old ones have.
+        """
+        found = self._placed_near(keyframe, guess.pose, reach=0.5, turn=0.35)
+        if found is None or found.response < _STRANGE[0]:
+            return None
+        nearest = self._nearest(found.pose)[0]
+        self._strange, self._odd_way = 0, 0.0
+        self._added(keyframe, guess)
+        self._link(nearest, found)
+        self.graph.optimize()
+        self.pose = self.graph.pose(len(self.keyframes) - 1)
+        return Fit(self.pose, found.covariance, found.response)
 
     def _sought(self, keyframe: Keyframe, guess: Match) -> Fit:
         """Look for the robot in the whole map once it is lost; map on where odometry says if that fails for long."""
@@ -360,8 +393,7 @@ class Mapper:
         chain = self._chain_near(number)
         if not chain or number - self._last_loop < 3:
             return None
-        near = np.hypot(*(self.graph.poses[chain, :2] - self.graph.poses[number, :2]).T)
-        nearest = chain[int(near.argmin())]
+        nearest = self._nearest_of(chain, number)
         spread = self.graph.relative_covariance(nearest, number)
         way, turn = math.sqrt(max(spread[0, 0], spread[1, 1])), math.sqrt(spread[2, 2])
         if way < _SURE[0] and turn < _SURE[1]:
@@ -377,6 +409,16 @@ class Mapper:
         self.graph.link(nearest, number, relative, spread)
         moved = self.graph.optimize()
         return moved if self.graph.loops[-1].weight > 0.5 else None
+
+    def _nearest_of(self, chain: list[int], number: int) -> int:
+        """Return the keyframe of a chain that is nearest to another one, or nearly so and at the end of a loop already.
+
+        The time to solve the graph grows with the number of keyframes at which loops end.
+        """
+        far = np.hypot(*(self.graph.poses[chain, :2] - self.graph.poses[number, :2]).T)
+        ends = {each.source for each in self.graph.loops} | {each.target for each in self.graph.loops}
+        used = np.isin(chain, list(ends)) & (far < far.min() + 0.7)
+        return chain[int(np.where(used, far - 1.0, far).argmin())]
 
     def _chain_near(self, number: int) -> list[int]:
         """Return the longest run of earlier keyframes near a keyframe that is not a part of the way just driven."""

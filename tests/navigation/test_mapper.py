@@ -181,6 +181,18 @@ def test_a_robot_that_is_carried_away_is_found_again() -> None:
     assert np.mean(near < 0.1) > 0.9
 
 
+def test_wheels_that_slip_farther_than_a_match_looks_lose_nothing() -> None:
+    mapper = Mapper()
+    poses = way(ROUND)
+    _, odometry = mapped(mapper, ROOM, poses)
+    count, there = len(mapper.keyframes), placed_on(poses[-1], Pose(0.6))
+    fit = mapper.process(scan_of(ROOM, there, 99), placed_on(odometry, Pose(0.6, 0.42)))
+    assert fit is not None
+    assert not fit.is_lost
+    assert len(mapper.keyframes) == count + 1
+    assert math.dist(fit.pose[:2], there[:2]) < 0.05
+
+
 def test_a_lost_robot_that_finds_nothing_maps_on() -> None:
     mapper = Mapper()
     _, odometry = mapped(mapper, ROOM, way(ROUND[:4]))

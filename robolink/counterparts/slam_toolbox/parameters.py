@@ -64,6 +64,7 @@ OTHERS: dict[str, tuple[bool | str, str]] = {
     "paused_new_measurements": (False, "True while scans are not used; see the service pause_new_measurements"),
     "scan_topic": ("/scan", "topic of the scans"),
     "use_map_saver": (True, "offer the service save_map"),
+    "use_response_expansion": (True, "look three times as far where nothing fits well"),
     "use_scan_matching": (True, "match scans onto each other; without, odometry is believed"),
 }
 
