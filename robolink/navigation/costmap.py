@@ -359,6 +359,8 @@ class ObstacleLayer:
         under = Window(max(low[0], 0), min(high[0], height), max(low[1], 0), min(high[1], width))
         if under.bottom >= under.top or under.left >= under.right:
             return window
+        if not self.cells[under.cells].any():  # all is free already
+            return under.joined(window)
         across, up = grid.cell_to_world(*np.mgrid[under.cells])
         inside = contains(np.column_stack((x, y)), np.column_stack((across.ravel(), up.ravel())))
         self.cells[under.cells][inside.reshape(across.shape)] = FREE

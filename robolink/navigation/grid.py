@@ -122,7 +122,8 @@ def _down_columns(occupied: npt.NDArray[np.bool_], most: int, kind: type[np.inte
 def _along_rows(upright: npt.NDArray[Any], squares: npt.NDArray[Any], reach: int) -> None:
     """Write the squared distances of rows whose squared distances along the columns are known."""
     squares[:] = upright
+    farther = np.empty_like(upright)
     for shift in range(1, reach + 1):
-        square = upright.dtype.type(shift * shift)
-        np.minimum(squares[:, shift:], upright[:, :-shift] + square, out=squares[:, shift:])
-        np.minimum(squares[:, :-shift], upright[:, shift:] + square, out=squares[:, :-shift])
+        np.add(upright, upright.dtype.type(shift * shift), out=farther)
+        np.minimum(squares[:, shift:], farther[:, :-shift], out=squares[:, shift:])
+        np.minimum(squares[:, :-shift], farther[:, shift:], out=squares[:, :-shift])

@@ -14,6 +14,8 @@ SAMPLES = 4
 """Samples of a line for each cell that it crosses."""
 ROUNDS = 60
 """Rounds of rounding corners."""
+REACH = 24
+"""Neighbours on either side that move a point by more than nothing."""
 TO_LINE, TO_NEIGHBOURS = 0.05, 0.45
 """Shares by which a round moves a point towards its old place, and between its neighbours."""
 
@@ -95,17 +97,46 @@ def rounded(points: Floats, weights: Weights) -> Floats:
         points: Points at equal distances, as columns and rows of cells: shape (points, 2).
         weights: Cells.
     """
+    if len(points) < 3:
+        return np.array(points)
+    settled = _settled(points)
+    if _free(settled, weights).all():
+        return settled
     line, found = points[1:-1], np.array(points)
-    if not len(line):
-        return found
     inner = found[1:-1]
     for _ in range(ROUNDS):
         pull = TO_LINE * (line - inner) + TO_NEIGHBOURS * (found[:-2] + found[2:] - 2.0 * inner)
         moved = inner + pull
-        # Not only the points but the middles of the lines between them.
-        whole = np.concatenate((found[:1], moved, found[-1:]))
-        free = _weights_at(moved, weights) != BLOCKED
-        middle = _weights_at((whole[1:] + whole[:-1]) / 2, weights) != BLOCKED
-        free &= middle[1:] & middle[:-1]
+        free = _free(np.concatenate((found[:1], moved, found[-1:])), weights)
         inner[free] = moved[free]
+    return found
+
+
+def _settled(points: Floats) -> Floats:
+    """Return where the points are after many rounds without obstacles, as sums of neighbours with falling shares."""
+    padded = np.pad(points, ((REACH, REACH), (0, 0)), mode="reflect", reflect_type="odd")  # which keeps the ends
+    found: Floats = _SHARES[0] * points
+    for shift, share in enumerate(_SHARES[1:], 1):
+        found += share * (padded[REACH - shift : -REACH - shift] + padded[REACH + shift : len(padded) - REACH + shift])
+    found[0], found[-1] = points[0], points[-1]
+    return found
+
+
+def _shares() -> list[float]:
+    """Return the shares of a point and of its neighbours, near and far, at which a round moves nothing any more."""
+    stays = TO_LINE + 2.0 * TO_NEIGHBOURS
+    falls = (stays - math.sqrt(stays * stays - 4.0 * TO_NEIGHBOURS * TO_NEIGHBOURS)) / (2.0 * TO_NEIGHBOURS)
+    powers = [falls**each for each in range(REACH + 1)]
+    total = powers[0] + 2.0 * math.fsum(powers[1:])
+    return [each / total for each in powers]
+
+
+_SHARES = _shares()
+
+
+def _free(points: Floats, weights: Weights) -> npt.NDArray[np.bool_]:
+    """Return which of the inner points lie in no blocked cell, nor do the middles of the lines to their neighbours."""
+    found: npt.NDArray[np.bool_] = _weights_at(points[1:-1], weights) != BLOCKED
+    middle = _weights_at((points[1:] + points[:-1]) / 2, weights) != BLOCKED
+    found &= middle[1:] & middle[:-1]
     return found

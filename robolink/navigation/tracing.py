@@ -57,14 +57,21 @@ def _trace(shape: tuple[int, ...], start: tuple[int, int], rows: Whole, columns:
     first, last = _ends(major, minor, lengths, span)
     last = np.minimum(last, np.where(steep, up_room, right_room))
     last = np.minimum(last, _steps_within(major, minor, np.where(steep, right_room, up_room)))
-    steps = np.arange(int(last.max(initial=0.0)) + 1)
-    # Quotients of whole numbers that a double holds exactly: rounded down they are those of whole numbers.
-    aside = ((steps * minor[:, None] + _half(major)[:, None]) / np.maximum(major, 1)[:, None]).astype(np.int64)
-    cells = np.where(steep, up_step * width, right_step)[:, None] * steps
-    cells += np.where(steep, right_step, up_step * width)[:, None] * aside
-    cells += start[0] * width + start[1]
-    chosen: Whole = cells[(steps <= last[:, None]) & (steps >= first[:, None])]
-    return chosen
+    most = int(last.max(initial=0.0)) + 1
+    # Quotients of whole numbers that a float holds exactly: rounded down they are those of whole numbers.
+    small = most * float(major.max(initial=1.0)) < 2**23 and height * width < 2**31
+    kind, index = (np.float32, np.int32) if small else (np.float64, np.int64)
+    steps = np.arange(most, dtype=index)
+    aside = steps.astype(kind) * minor.astype(kind)[:, None]
+    aside += _half(major).astype(kind)[:, None]
+    aside /= np.maximum(major, 1).astype(kind)[:, None]
+    cells = np.where(steep, up_step * width, right_step).astype(index)[:, None] * steps
+    cells += np.where(steep, right_step, up_step * width).astype(index)[:, None] * aside.astype(index)
+    cells += index(start[0] * width + start[1])
+    chosen = steps <= last[:, None]
+    if span.least > 0:
+        chosen &= steps >= first[:, None]
+    return cells[chosen].astype(np.int64)
 
 
 def _half(major: Floats) -> Floats:
