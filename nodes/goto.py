@@ -13,8 +13,9 @@ from robolink import Duration, Future, Node, Time
 from robolink.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from robolink.action.server import ServerGoalHandle
 from robolink.control.approach import SETTLED, TURN_FIRST, Left, Limits, decide, has_arrived, is_reached, left_to
-from robolink.control.laser import lane_ahead, returns
+from robolink.control.laser import lane_ahead, points, returns
 from robolink.exceptions import ExternalShutdownException, RobolinkError
+from robolink.extensions.optional import DETOURS, is_here, part
 from robolink.geometry.plane import Pose, Speeds, pose_of, wrapped
 from robolink.interfaces.builtin_interfaces.msg import Time as TimeMessage
 from robolink.interfaces.geometry_msgs.msg import Pose as PoseMessage
@@ -33,6 +34,9 @@ Codes = FollowPath.Result
 
 FEEDBACK_PERIOD, STALE_SCAN, LONGEST_STEP = 0.2, 1.0, 0.2
 """Period of feedback, greatest age of a scan, and longest time of one change of speed, in seconds."""
+
+MARGIN = 0.03
+"""Metres beside the lane that a way round an obstacle leaves."""
 
 FARTHEST = 1e6
 """Largest coordinate of a goal, in metres: a place farther away is a mistake."""
@@ -70,8 +74,8 @@ class Goto(Node):
     """Action server that drives to one goal at a time, by odometry; a new goal replaces the one before.
 
     The robot must be able to turn on the spot. Goals are in the frame of odometry, or in one that /tf connects with it;
-    a goal in a frame of the robot is fixed where that frame is at the start. It plans no path round obstacles: with a
-    scanner it waits for them to leave its lane.
+    a goal in a frame of the robot is fixed where that frame is at the start. With a scanner it drives round what stands
+    in its way, and waits for what leaves no way; it has no map.
     """
 
     trip: Trip | None = None
@@ -80,6 +84,7 @@ class Goto(Node):
         super().__init__("goto", **options)
         for name, (words, low, high) in PARAMETERS.items():
             self.declare_parameter(name, Limits._field_defaults[name], described(words, low, high))
+        self.declare_parameter("detours", True, described("drive round what the scanner sees"))
         self.declare_parameter("obstacle_stop", True, described("wait for what is in the lane ahead"))
         self.declare_parameter("stop_distance", 0.35, described("metres before the scanner", 0.0, 10.0))
         self.declare_parameter("half_width", 0.22, described("metres, of the lane", 0.01, 10.0))
@@ -89,6 +94,9 @@ class Goto(Node):
         self.odom_at = self.get_clock().now()
         self.speeds, self.free = Speeds(), math.inf
         self.scan_at: Time | None = None
+        self.detours = self.made_detours()
+        self.aim: Pose | None = None
+        """Place on the way round an obstacle, in the frame of odometry; None to drive straight to the goal."""
         self.buffer = Buffer()
         self.listener = TransformListener(self.buffer, self)
         self.cmd_vel = self.create_publisher(Twist, "cmd_vel", 10)
@@ -175,10 +183,26 @@ class Goto(Node):
 
     # Driving
 
+    def made_detours(self) -> Any:
+        """Return the planner of ways round obstacles; None without one: then it drives straight."""
+        if not is_here(DETOURS):
+            self.get_logger().info("it drives straight: robolink.navigation, which plans, is not installed")
+            return None
+        return part(DETOURS, "navigation")(self.get_parameter("half_width").value + MARGIN)
+
     def on_scan(self, scan: LaserScan) -> None:
-        """Measure the free length of the lane ahead."""
+        """Measure the free length of the lane ahead, and look for a way round what is in it."""
         self.free = lane_ahead(*returns(scan), self.get_parameter("half_width").value)
-        self.scan_at = self.get_clock().now()
+        self.scan_at, self.aim = self.get_clock().now(), None
+        avoids = self.get_parameter("obstacle_stop").value and self.get_parameter("detours").value
+        if self.detours is None or self.trip is None or fault(self.here.pose) or not avoids:
+            return
+        here = pose_of(self.here.pose)
+        self.detours.see(here, *points(scan))
+        with contextlib.suppress(TransformException):  # `on_odom` gives up then
+            goal = self.in_odom(self.trip.goal)
+            aim = self.detours.aim(here, goal)
+            self.aim = None if aim == goal else aim
 
     def on_odom(self, odometry: Odometry) -> None:
         """Drive on towards the present place of the goal."""
@@ -204,7 +228,8 @@ class Goto(Node):
         """Send the next command, or end the trip: its goal is reached, cancelled or out of reach."""
         limits = Limits(*(self.get_parameter(name).value for name in Limits._fields))
         trip.arrived = has_arrived(left, limits, trip.arrived)
-        room = math.inf if trip.arrived else self.room(left)
+        aimed = left if self.aim is None or trip.arrived else left_to(self.aim, pose_of(self.here.pose))
+        room = math.inf if trip.arrived else self.room(aimed)
         still = (self.odom_at - trip.moved_at).nanoseconds / 1e9
         is_stuck = still > self.get_parameter("progress_timeout").value
         if trip.handle.is_cancel_requested:
@@ -219,7 +244,7 @@ class Goto(Node):
             reason = "something is in the way" if room <= 0.0 else "the robot does not move"
             self.give_up(f"no progress {left.distance:.2f} m from the goal: {reason}", Codes.FAILED_TO_MAKE_PROGRESS)
         else:
-            self.command(decide(left, self.speeds, limits, room, trip.arrived, dt))
+            self.command(decide(aimed, self.speeds, limits, room, trip.arrived, dt))
             self.tell(trip, left, limits)
 
     def room(self, left: Left) -> float:

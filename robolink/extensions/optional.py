@@ -19,6 +19,9 @@ PAGE = "robolink.view:page_of"
 PARTICIPANT = "robolink.rtps:Participant"
 """Target of the participant that meets DDS."""
 
+DETOURS = "robolink.navigation.detours:Detours"
+"""Target of the planner of ways round obstacles."""
+
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))  # noqa: PTH120 - pathlib takes a start 3 ms
 
 

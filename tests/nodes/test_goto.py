@@ -244,7 +244,7 @@ def test_it_waits_before_an_obstacle_then_gives_up(system: System, tmp_path: Pat
     path = tmp_path / "wall.yaml"
     path.write_text(WALL)
     add_world(system, path)
-    node = system.start(goto.Goto, parameters={"progress_timeout": 3.0})
+    node = system.start(goto.Goto, parameters={"progress_timeout": 3.0, "detours": False})
     client = Client(system)
     status, result = client.end(client.send(message(x=5.5, y=3.0)))
     assert (status, result.error_code) == (GoalStatus.STATUS_ABORTED, Codes.FAILED_TO_MAKE_PROGRESS)
@@ -275,3 +275,40 @@ def test_the_speed_can_be_changed_on_the_way_and_has_a_range(room: System) -> No
     room.run(1.0)
     assert room.robot().twist.v == pytest.approx(0.1)
     assert all(each.description for each in node.describe_parameters(list(goto.PARAMETERS)))
+
+
+BOX = """
+walls:
+  - {polyline: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: true}
+obstacles:
+  - {box: [0.6, 2.0], pose: [4, 3]}
+robots:
+  - {name: robot, pose: [1.5, 3, 0], sensors: [{lidar: scan, noise: 0.01}]}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.annex("nav2")
+def test_it_drives_round_what_the_scanner_sees(system: System, tmp_path: Path) -> None:
+    path = tmp_path / "box.yaml"
+    path.write_text(BOX)
+    add_world(system, path)
+    system.start(goto.Goto)
+    client = Client(system)
+    status, _ = client.end(client.send(message(x=6.5, y=3.0)))
+    assert (status, system.robot().contacts) == (GoalStatus.STATUS_SUCCEEDED, 0)
+    assert is_at(system, 6.5, 3.0, 0.0)
+
+
+@pytest.mark.slow
+def test_without_detours_it_waits_as_before(system: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "box.yaml"
+    path.write_text(BOX)
+    add_world(system, path)
+    monkeypatch.setattr(goto, "DETOURS", "robolink.nowhere:Detours")
+    system.start(goto.Goto, parameters={"progress_timeout": 3.0})
+    client = Client(system)
+    status, result = client.end(client.send(message(x=6.5, y=3.0)))
+    assert status == GoalStatus.STATUS_ABORTED
+    assert result.error_msg.endswith("something is in the way")
+    assert any("robolink.navigation, which plans, is not installed" in each.message for each in system.logs)
