@@ -323,3 +323,19 @@ def test_a_goal_that_fails_is_told_and_taken_away(browser: Browser) -> None:
             told = "document.querySelector('.note.error')?.textContent"
             spin_until(executor, lambda: browser.js(told) == "it is in a wall")
         assert browser.js(f"{WORLD}.scene.layers.get('/goal_pose').layer.reached")
+
+
+def test_without_a_map_a_goal_is_in_the_fixed_frame(browser: Browser) -> None:
+    with opened(browser, "world") as page:
+        heard: list[PoseStamped] = []
+        publish(page.node, TFMessage(transforms=[transform("odom", "base_link", 0.0, 0.0)]), "/tf")
+        page.node.create_subscription(PoseStamped, "goal_pose", heard.append, 10)
+        browser.wait("robolink.tf.fixed == 'odom'")
+        browser.wait("robolink.connection.graph.subscribed.get('/goal_pose')?.length")
+        browser.click(".tool-goal")
+        browser.drag(page.world(1.0, 0.5), page.world(1.0, 1.5))
+        browser.wait("document.querySelector('.note')?.textContent.includes('in odom')")
+        with spun(page.node) as executor:
+            spin_until(executor, lambda: bool(heard))
+        assert heard[0].header.frame_id == "odom"
+        assert heard[0].pose.position.x == pytest.approx(1.0, abs=0.03)
