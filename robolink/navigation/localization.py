@@ -17,10 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from robolink.geometry.plane import Pose, placed_on, seen_from, wrapped
+from robolink.geometry.trigonometry import cos_and_sin
 from robolink.navigation.fit_watch import FitWatch
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.likelihood_field import UNITS, LikelihoodField, SensorModel
-from robolink.navigation.motion_models import Alphas, MotionModel, move_differential, roughen
+from robolink.navigation.motion_models import Alphas, MotionModel, move_differential, roughen, wrap_headings
 from robolink.navigation.particle_filter import Estimate, FilterOptions, ParticleFilter
 
 MOST_FIELDS = 4
@@ -103,7 +104,7 @@ class Localization:
         self._updated_at: Pose | None = None
         self._seen_at: Pose | None = None
         self._due: dict[str, bool] = {}
-        self._updates, self.is_forced = 0, False
+        self._updates, self.is_forced, self._is_restarted = 0, False, False
         self.watch = FitWatch(self._options.recovery_alpha_slow, self._options.recovery_alpha_fast)
 
     @property
@@ -141,9 +142,9 @@ class Localization:
         self._begin()
         return True
 
-    def forget_odometry(self) -> None:
-        """Take the next odometry as a beginning: it was set back, and not by driving."""
-        self._updated_at = self._seen_at = None
+    def restart_odometry(self) -> None:
+        """Take the next odometry as a jump, however near it is: it has begun anew."""
+        self._is_restarted = True
 
     # Scans
 
@@ -158,7 +159,7 @@ class Localization:
         Returns:
             True if there is a new estimate.
         """
-        self.note_jump(odometry, seconds)
+        self._note_jump(odometry, seconds)
         if self._grid is None or not self._is_due(odometry, beams.scanner):
             return False
         if self._updated_at is not None:
@@ -180,16 +181,23 @@ class Localization:
             self.particles.resample()
         return True
 
-    def note_jump(self, odometry: Pose, seconds: float) -> bool:
-        """Return True if odometry has jumped since the last scan, `seconds` ago; a jump does not count as driven."""
+    def _note_jump(self, odometry: Pose, seconds: float) -> None:
+        """Split the particles if odometry has jumped since the last scan, `seconds` ago.
+
+        Half of them stay: odometry was set back. The others jump with it: the robot was put elsewhere, as when a
+        simulator is reset. The scans tell which is right.
+        """
         last, self._seen_at = self._seen_at, odometry
         if last is None or self._updated_at is None:
-            return False
+            return
         most = FASTEST * max(seconds, 0.1)
-        if math.dist(last[:2], odometry[:2]) <= most and abs(wrapped(last.theta - odometry.theta)) <= most:
-            return False
-        self._updated_at = placed_on(odometry, seen_from(last, self._updated_at))
-        return True
+        has_moved = math.dist(last[:2], odometry[:2]) <= most and abs(wrapped(last.theta - odometry.theta)) <= most
+        if has_moved and not self._is_restarted:
+            return
+        self.particles.move(partial(_follow, seen_from(self._updated_at, last), 0))
+        self.particles.resample()
+        self.particles.move(partial(_follow, seen_from(last, odometry), 1))
+        self._updated_at, self._is_restarted, self.is_forced = odometry, False, True
 
     def _is_due(self, odometry: Pose, scanner: str) -> bool:
         """Return True if a scanner's scan is to be used: each has its turn whenever the robot has moved."""
@@ -242,6 +250,16 @@ def _moved(
     motion: MotionModel, before: Pose, after: Pose, alphas: Alphas, poses: Floats, random: np.random.Generator
 ) -> None:
     motion(poses, before, after, alphas, random)
+
+
+def _follow(way: Pose, every: int, poses: Floats, random: np.random.Generator) -> None:
+    """Move poses by a way of the robot, without errors: all of them, or with `every` of 1 every second one."""
+    chosen = poses[:, :: every + 1]
+    cos, sin = cos_and_sin(chosen[2])
+    chosen[0] += cos * way.x - sin * way.y
+    chosen[1] += sin * way.x + cos * way.y
+    chosen[2] += way.theta
+    wrap_headings(poses)
 
 
 def _is_beyond(last: Pose, now: Pose, far: float, turned: float) -> bool:

@@ -19,7 +19,7 @@ from robolink.interfaces.lifecycle_msgs.msg import Transition
 from robolink.interfaces.lifecycle_msgs.srv import ChangeState
 from robolink.interfaces.nav_msgs.msg import OccupancyGrid
 from robolink.interfaces.sensor_msgs.msg import LaserScan
-from robolink.interfaces.std_srvs.srv import Empty
+from robolink.interfaces.std_srvs.srv import Empty, Trigger
 from robolink.testing import System
 from tests.support.localization_lives import LATCHED, Files, Judge, initial, start, written
 
@@ -273,3 +273,18 @@ def test_a_map_that_is_wrong_in_places_does_not_mislead_it(tmp_path_factory: pyt
         system.run(60.0)
     assert judge.rms(5.0)[0] < 0.06
     assert judge.held(5.0) > 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sim_time", [False, True])
+def test_a_world_that_is_reset_is_followed(tmp_path_factory: pytest.TempPathFactory, sim_time: bool) -> None:
+    """The robot is where it began, and odometry at its origin again."""
+    files = written("lab", tmp_path_factory.mktemp("reset"), 1)
+    with System(1) as system:
+        judge = Judge(system)
+        own: dict[str, Any] = {"use_sim_time": True} if sim_time else {}
+        start(system, files, 1, publish_clock=sim_time, **own, **initial(files.start))
+        system.run(15.0)
+        assert system.call(Trigger, "/world/reset").success
+        system.run(15.0)
+    assert judge.moments[-1].distance < 0.1

@@ -87,26 +87,46 @@ def test_the_transform_leads_from_the_map_to_odometry() -> None:
     assert placed_on(origin, way) == pytest.approx(pose(made))
 
 
-@pytest.mark.parametrize("jump", [Pose(100.0, -50.0, 2.0), Pose(0.1, 0.0, 3.0)])
-def test_a_jump_of_odometry_is_not_a_way(jump: Pose) -> None:
-    made = localized()
-    made.note_jump(Pose(0.1, 0.0, 0.0), 0.1)
-    assert made.note_jump(placed_on(jump, Pose(0.1, 0.0, 0.0)), 0.1)
-    origin = made.origin_of_odometry()
-    assert origin is not None
-    assert placed_on(origin, placed_on(jump, Pose(0.1, 0.0, 0.0)))[:2] == pytest.approx(
-        placed_on(pose(made), Pose(0.1, 0.0, 0.0))[:2]
-    )
-    assert not made.note_jump(placed_on(jump, Pose(0.2, 0.0, 0.0)), 0.1)
-    assert not made.note_jump(placed_on(jump, Pose(40.0, 0.0, 0.0)), 10.0)  # no scan for 10 s
+def drive(made: Localization, odometry: Pose, truth: Pose) -> Pose:
+    """Drive round a circle of 30 cm radius from poses of odometry and of the robot; return where it is then."""
+    for step in range(16):
+        turned = 0.25 * step
+        way = Pose(0.3 * math.sin(turned), 0.3 * (1.0 - math.cos(turned)), turned)
+        made.update(placed_on(odometry, way), beams(placed_on(truth, way)), 0.1)
+    there = placed_on(truth, way)
+    return there._replace(theta=math.remainder(there.theta, math.tau))
 
 
-def test_odometry_may_begin_anew() -> None:
+@pytest.mark.parametrize("jump", [Pose(100.0, -50.0, 2.0), Pose(0.0, 0.0, 3.0)])
+def test_odometry_that_is_set_elsewhere_does_not_move_the_robot(jump: Pose) -> None:
     made = localized()
-    before = pose(made)
-    made.forget_odometry()
-    assert made.update(Pose(9.0, 9.0, 0.0), beams(TRUTH), seconds=0.1)
-    assert pose(made) == pytest.approx(before, abs=0.1)
+    made.update(Pose(0.1, 0.0, 0.0), beams(placed_on(TRUTH, Pose(0.1, 0.0, 0.0))), 0.1)
+    there = drive(made, jump, placed_on(TRUTH, Pose(0.1, 0.0, 0.0)))
+    assert pose(made) == pytest.approx(there, abs=0.15)
+    assert made.estimate is not None
+    assert made.estimate.weight > 0.9
+
+
+def test_a_robot_that_jumps_with_its_odometry_is_followed() -> None:
+    """As when a simulator is reset."""
+    made = localized()
+    jump = Pose(1.5, 1.0, 2.0)
+    there = drive(made, jump, placed_on(TRUTH, jump))
+    assert pose(made) == pytest.approx(there, abs=0.15)
+
+
+def test_odometry_may_begin_anew_with_time() -> None:
+    made = localized()
+    made.restart_odometry()
+    there = drive(made, Pose(0.4, 0.2, 0.1), TRUTH)
+    assert pose(made) == pytest.approx(there, abs=0.15)
+
+
+def test_a_long_way_between_two_scans_is_not_a_jump() -> None:
+    made = localized()
+    way = Pose(1.5, 0.0, 0.0)
+    assert made.update(way, beams(placed_on(TRUTH, way)), 5.0)
+    assert pose(made) == pytest.approx(placed_on(TRUTH, way), abs=0.4)
 
 
 def test_a_robot_at_rest_stays_in_doubt() -> None:

@@ -226,9 +226,12 @@ def _time(message: Any) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def start(system: System, files: Files, seed: int = 0, *, wander: bool = True, **values: Any) -> None:
+def start(
+    system: System, files: Files, seed: int = 0, *, wander: bool = True, publish_clock: bool = False, **values: Any
+) -> None:
     """Start a world, its map, AMCL and a robot that wanders; `values` are AMCL's parameters."""
-    system.start("world", parameters={"world": str(files.world), "seed": seed, "publish_map": False})
+    world = {"world": str(files.world), "seed": seed, "publish_map": False, "publish_clock": publish_clock}
+    system.start("world", parameters=world)
     system.start("nav2_map_server map_server", parameters={"yaml_filename": str(files.chart)})
     system.start("nav2_amcl amcl", parameters={"base_frame_id": "base_link", "random_seed": seed, **values})
     names: Mapping[str, Any] = {"node_names": ["map_server", "amcl"], "autostart": True}

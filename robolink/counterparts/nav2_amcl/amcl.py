@@ -347,7 +347,7 @@ class AmclNode(LifecycleNode):
         seconds = self._since(scan)
         limits = beams.Limits(*(self.values[each] for each in ("max_beams", "laser_min_range", "laser_max_range")))
         if seconds < -BACK:
-            self._forget_odometry(f"stamps of scans go back by {-seconds:.1f} s")
+            self._restart_odometry(f"stamps of scans go back by {-seconds:.1f} s")
         if localization.update(odometry, beams.beams_of(scan, mount, limits), max(seconds, 0.0)):
             self._tell(scan)
         self._broadcast(scan)
@@ -359,15 +359,15 @@ class AmclNode(LifecycleNode):
         return seconds
 
     def on_time_jump(self, jump: TimeJump) -> None:
-        """Forget odometry when time goes back."""
+        """Take odometry as begun anew when time goes back."""
         self._forget_waiting()
         self._scan_at = self.get_clock().now()
-        self._forget_odometry(f"time has jumped back by {-jump.delta.nanoseconds / 1e9:.1f} s")
+        self._restart_odometry(f"time has jumped back by {-jump.delta.nanoseconds / 1e9:.1f} s")
 
-    def _forget_odometry(self, reason: str) -> None:
+    def _restart_odometry(self, reason: str) -> None:
         if self.localization is not None:
-            self.localization.forget_odometry()
-            self.get_logger().warning(f"{reason}: odometry begins anew; set the pose if the robot was moved")
+            self.localization.restart_odometry()
+            self.get_logger().warning(f"{reason}: odometry may have begun anew; set the pose if the robot was moved")
 
     # Results
 
