@@ -144,7 +144,8 @@ def cheapest(costs: Grid, start: Pose, goal: Pose) -> float:
         open_ = free[rows + up, cols + right] & free[rows + up, cols] & free[rows, cols + right]
         to = (rows[open_] + up, cols[open_] + right)
         price = math.hypot(up, right) * (1 + PlanOptions().slope * weights[to] / 252)
-        edges.append((price, rows[open_] * width + cols[open_], to[0] * width + to[1]))
+        ends = (rows[open_] * width + cols[open_], to[0] * width + to[1])
+        edges.append((price, *(each.astype(np.int32) for each in ends)))  # scipy 1.11 takes no others
     price, one, other = (np.concatenate(each) for each in zip(*edges, strict=True))
     graph = coo_array((price, (one, other)), (weights.size,) * 2).tocsr()
     first, last = (

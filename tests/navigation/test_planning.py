@@ -65,7 +65,8 @@ def cheapest(weights: np.ndarray, start: tuple[int, int], goal: tuple[int, int])
             ok = free[r + up, c + right] & free[r + up, c] & free[r, c + right]
             r, c = r[ok], c[ok]
             price = math.hypot(up, right) * (1 + SLOPE * weights[r + up, c + right] / 252)
-            entries.append((price, r * width + c, (r + up) * width + c + right))
+            ends = (each.astype(np.int32) for each in (r * width + c, (r + up) * width + c + right))
+            entries.append((price, *ends))
     price, one, other = (np.concatenate(each) for each in zip(*entries, strict=True))
     found = dijkstra(
         coo_array((price, (one, other)), (height * width,) * 2).tocsr(), indices=start[0] * width + start[1]
