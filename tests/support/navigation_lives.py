@@ -65,15 +65,22 @@ class Navigation:
         chart: Path of the map's file; None makes a map, in the frame of odometry, which is the world's.
         start: Where the robot begins, which amcl is told.
         parameters: Path of a file of parameters.
+        launch: Other arguments of the launch file.
     """
 
     def __init__(
-        self, system: System, world: Path, chart: Path | None, start: Pose, parameters: Path = PARAMETERS
+        self,
+        system: System,
+        world: Path,
+        chart: Path | None,
+        start: Pose,
+        parameters: Path = PARAMETERS,
+        **launch: str,
     ) -> None:
         self.system, self.feedback = system, cast(Any, None)
         system.start("world", parameters={"world": str(world)})
         given = {"slam": "True"} if chart is None else {"map": str(chart)}
-        system.launch("nav2_bringup bringup_launch.py", arguments={"params_file": str(parameters), **given})
+        system.launch("nav2_bringup bringup_launch.py", arguments={"params_file": str(parameters), **given, **launch})
         self.client = ActionClient(system.node, NavigateToPose, "navigate_to_pose")
         system.expect_log("Managed nodes are active", within=30.0)
         for name in ("slam" if chart is None else "localization", "navigation"):
