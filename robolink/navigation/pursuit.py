@@ -22,6 +22,8 @@ from robolink.navigation.singles import F
 
 _STEP = 0.05
 """Seconds between two looks for a collision ahead, at most."""
+_NEAR = 0.8
+"""Share of the tolerance within which the robot stops at the goal, and turns."""
 _FORESIGHT = np.arange(0.0, 2.6, 0.25)
 """Times in seconds for which it is predicted where moving obstacles will be."""
 _MARGIN, _SPREAD = 0.08, 0.06
@@ -100,8 +102,9 @@ class Pursuit:
         options = self.options
         x, y = self._carrot(pose, speed, path)
         distance, bearing = math.hypot(x, y), math.atan2(y, x)
-        at_goal = path.is_whole and math.hypot(path.x[-1] - pose.x, path.y[-1] - pose.y) < tolerance
-        self._is_there = at_goal or (self._is_there and options.stateful)
+        left = math.hypot(path.x[-1] - pose.x, path.y[-1] - pose.y) if path.is_whole else math.inf
+        # It comes a little nearer than it must: whoever checks the goal has seen it there, though it be driven off.
+        self._is_there = left < _NEAR * tolerance or (self._is_there and options.stateful and left < tolerance)
         if options.use_rotate_to_heading and self._is_there:
             v, w = 0.0, self._turning(wrapped(float(path.theta[-1]) - pose.theta), speed[1])
         elif options.use_rotate_to_heading and abs(bearing) > options.rotate_to_heading_min_angle:

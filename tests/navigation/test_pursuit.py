@@ -147,3 +147,14 @@ def test_it_lets_what_crosses_its_way_pass_and_goes_on(mover: Mover) -> None:
 def test_it_backs_away_from_what_comes_towards_it() -> None:
     least, _, slowest = met(Mover(1.5, 0.0, -0.2, 0.0, 0.37), seconds=6.0)
     assert (slowest, least > 0.0) == (-BACK, True)
+
+
+def test_a_robot_that_is_driven_off_at_the_goal_comes_back() -> None:
+    control, path = pursuit(), part(STRAIGHT, 3.6)
+
+    def speed(x: float) -> float:
+        return control.step(Pose(x, 0.0, 0.5), (0.0, 0.0), path, around(), 0.25).v
+
+    assert speed(3.85) == 0.0  # it only turns
+    assert speed(3.77) == 0.0
+    assert speed(3.7) > 0.0
