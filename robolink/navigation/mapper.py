@@ -29,6 +29,8 @@ _SURE = (0.02, 0.006)
 """Deviations (metres, radians) of what lies between two keyframes up to which matching them would bring nothing."""
 _CELLS = 800
 """Cells from the middle of a matcher's field to its border: where a lidar sees farther, they become larger."""
+_AROUND = 40.0
+"""Metres in x and in y around the last keyframe in which a lost robot is looked for."""
 _BREAK = np.diag([1e4, 1e4, 1e2])
 """Covariance of a step that nothing was measured of: from the last pose of a map to the first one of a new start."""
 _STRANGE = (0.55, 0.3)
@@ -357,9 +359,11 @@ class Mapper:
         """Match a scan onto the whole map, in any heading; None if it does not fit well anywhere."""
         if len(keyframe.points) < FEWEST:
             return None
-        low, high = self.graph.poses[:, :2].min(axis=0), self.graph.poses[:, :2].max(axis=0)
+        poses = self.graph.poses[:, :2]
+        within = np.flatnonzero(np.abs(poses - poses[-1]).max(axis=1) < _AROUND)
+        low, high = poses[within].min(axis=0), poses[within].max(axis=0)
         middle, reach = Pose(*((low + high) / 2).tolist()), float((high - low).max()) / 2 + 1.0
-        numbers = np.unique(np.linspace(0, len(self.keyframes) - 1, 150).astype(int)).tolist()
+        numbers = within[np.unique(np.linspace(0, len(within) - 1, 150).astype(int))].tolist()
         field = Field(
             self.points_of(numbers),
             (middle.x, middle.y),

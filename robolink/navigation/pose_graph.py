@@ -23,6 +23,7 @@ BELIEVED = 11.3
 """Squared error, by its covariance, above which a loop is doubted: 1 % of true ones have a larger one (chi², 3)."""
 _ROUNDS = 12
 _SMALL = 1e-9
+_FAR = 1e6
 
 
 class Loop(NamedTuple):
@@ -95,8 +96,15 @@ class PoseGraph:
     def relative_covariance(self, source: int, target: int) -> Floats:
         """Return how uncertain the pose `target` is as seen from the pose `source`, by all that is believed.
 
-        It is the covariance of x, y (metres) and heading (radians), in the frame of `source`.
+        It is the covariance of x, y (metres) and heading (radians), in the frame of `source`. Poses a million metres
+        apart are more than numbers can hold: then it is that of not knowing.
         """
+        try:
+            return self._relative_covariance(source, target)
+        except np.linalg.LinAlgError:
+            return np.diag([_FAR**2, _FAR**2, math.pi**2])
+
+    def _relative_covariance(self, source: int, target: int) -> Floats:
         system = _System(self, self.loops, [source, target])
         information = system.information([each.weight for each in self.loops])
         first, second = system.place(source), system.place(target)
@@ -126,10 +134,20 @@ class PoseGraph:
         Returns:
             The largest way that a pose was moved, in metres.
         """
-        before = self.poses.copy()
-        if not self.loops:
+        before = self.poses
+        try:
+            weights = self._agreed(believed)
+        except np.linalg.LinAlgError:  # poses a million metres apart are more than numbers can hold
+            self.poses = before
             return 0.0
+        self.loops = [each._replace(weight=weight) for each, weight in zip(self.loops, weights.tolist(), strict=True)]
+        return float(np.hypot(*(self.poses - before)[:, :2].T).max()) if len(before) else 0.0
+
+    def _agreed(self, believed: float) -> Floats:
+        """Move the poses to where they agree best; return how much each loop is believed."""
         weights = np.ones(len(self.loops))
+        if not self.loops:
+            return weights
         self._settle(weights)
         largest = float(self.errors().max())
         doubt = max(1.0, 2.0 * largest / believed)
@@ -139,8 +157,7 @@ class PoseGraph:
             self._settle(weights, rounds=3)
             if doubt == 1.0:
                 break
-        self.loops = [each._replace(weight=weight) for each, weight in zip(self.loops, weights.tolist(), strict=True)]
-        return float(np.hypot(*(self.poses - before)[:, :2].T).max())
+        return weights
 
     def _settle(self, weights: Floats, rounds: int = _ROUNDS) -> None:
         """Take Gauss-Newton steps until the poses stay where they are; a step that makes it worse is halved."""

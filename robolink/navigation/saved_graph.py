@@ -179,8 +179,8 @@ def _check_values(arrays: dict[str, Any]) -> None:
     for name in ("spreads", "loop_spreads"):
         if len(arrays[name]) and np.linalg.eigvalsh(arrays[name])[:, 0].min() <= 0.0:
             raise ValueError(f"{name}: expected covariances, whose eigenvalues are above 0")
-    if max(np.abs(arrays["poses"]).max(), np.abs(arrays["ends"]).max(initial=0.0)) > 1e8:
-        raise ValueError("poses, ends: expected less than 1e8 metres")
+    if max(np.abs(arrays["poses"]).max(), np.abs(arrays["ends"]).max(initial=0.0)) > 1e12:
+        raise ValueError("poses, ends: expected less than 1e12 metres")
 
 
 def _mapper(arrays: dict[str, Any], options: Options | None) -> Mapper:
