@@ -85,7 +85,7 @@ class Occupancy:
         *,
         min_pass_through: int = 2,
         occupancy_threshold: float = 0.1,
-        most_cells: int = 50_000_000,
+        most_cells: int = 25_000_000,
     ) -> None:
         self.resolution, self.min_pass_through = resolution, min_pass_through
         self.occupancy_threshold, self.most_cells = occupancy_threshold, most_cells

@@ -453,6 +453,7 @@ def test_every_scan_is_used_by_the_synchronous_node(system: System, robot: Robot
     assert len(node.mapper.keyframes) >= 1
 
 
+@pytest.mark.slow
 def test_a_robot_is_localized_in_a_saved_map(system: System, robot: Robot, tmp_path: Path) -> None:
     activated(system)
     saved(system, robot, tmp_path / "mine")
@@ -489,6 +490,7 @@ def test_localization_without_a_map_says_what_to_do(system: System, robot: Robot
     system.expect_log("set map_file_name, or call slam_toolbox/deserialize_map")
 
 
+@pytest.mark.slow
 def test_a_robot_that_is_carried_away_is_reported(system: System, robot: Robot) -> None:
     activated(system)
     robot.look()

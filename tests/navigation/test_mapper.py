@@ -124,6 +124,7 @@ def test_the_first_scan_is_where_odometry_says() -> None:
     assert fits[0].pose == Pose(7.0, -3.0, 1.0)
 
 
+@pytest.mark.slow
 def test_a_round_ends_where_it_began() -> None:
     places = [*ROUND, *ROUND[:4]]
     mapper = Mapper(Options(do_loop_closing=True))
@@ -144,6 +145,7 @@ def test_without_matching_odometry_is_all() -> None:
     assert fits[-1].response == 0.0
 
 
+@pytest.mark.slow
 def test_in_a_corridor_the_map_does_not_slide() -> None:
     mapper = Mapper()
     fits, odometry = mapped(mapper, CORRIDOR, way([(0.0, 0.2), (20.0, 0.2)]))
@@ -165,6 +167,7 @@ def test_where_nothing_is_seen_odometry_is_believed() -> None:
     assert mapper.grid().cells.size == 0
 
 
+@pytest.mark.slow
 def test_a_robot_that_is_carried_away_is_found_again() -> None:
     mapper = Mapper()
     _, odometry = mapped(mapper, ROOM, way(ROUND))
@@ -181,6 +184,7 @@ def test_a_robot_that_is_carried_away_is_found_again() -> None:
     assert np.mean(near < 0.1) > 0.9
 
 
+@pytest.mark.slow
 def test_wheels_that_slip_farther_than_a_match_looks_lose_nothing() -> None:
     mapper = Mapper()
     poses = way(ROUND)
@@ -193,6 +197,7 @@ def test_wheels_that_slip_farther_than_a_match_looks_lose_nothing() -> None:
     assert math.dist(fit.pose[:2], there[:2]) < 0.05
 
 
+@pytest.mark.slow
 def test_a_lost_robot_that_finds_nothing_maps_on() -> None:
     mapper = Mapper()
     _, odometry = mapped(mapper, ROOM, way(ROUND[:4]))
@@ -202,6 +207,7 @@ def test_a_lost_robot_that_finds_nothing_maps_on() -> None:
     assert not fits[-1].is_lost
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [Pose(2.0, 1.5), Pose(2.3, 1.2, 0.2)])
 def test_a_map_goes_on_near_a_pose(start: Pose) -> None:
     mapper = Mapper()
@@ -212,6 +218,7 @@ def test_a_map_goes_on_near_a_pose(start: Pose) -> None:
     assert math.dist(fits[-1].pose[:2], way(ROUND[:3])[-1][:2]) < 0.4
 
 
+@pytest.mark.slow
 def test_a_robot_localizes_itself_in_a_map_that_stays_as_it_is() -> None:
     mapper = Mapper()
     mapped(mapper, ROOM, way(ROUND))
@@ -279,3 +286,30 @@ def test_far_from_the_origin_it_is_the_same() -> None:
     fits, _ = mapped(mapper, walls, far)
     assert math.dist(fits[-1].pose[:2], far[-1][:2]) < 0.4
     assert max(mapper.grid().cells.shape) < 400
+
+
+ODD = [
+    Beams(np.empty((0, 2)), 0),
+    Beams(np.ones((100, 2)), 100),
+    Beams(np.zeros((50, 2)), 50),
+    Beams(np.column_stack((np.linspace(-5.0, 5.0, 200), np.ones(200))), 200),
+    Beams(np.random.default_rng(1).normal(0.0, 5.0, (300, 2)), 300),
+    Beams(np.random.default_rng(2).normal(0.0, 5.0, (50, 2)), 0),
+]
+"""Scans that say little: nothing, one place, a line, noise, and beams that met nothing."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [0, 45, 54, 57])
+def test_whatever_comes_the_mapper_goes_on(seed: int) -> None:
+    random, mapper, odometry = np.random.default_rng(seed), Mapper(), Pose(2.0, 2.0)
+    for number in range(20):
+        step = float(random.choice([0.6, 0.6, 0.6, 0.6, 3.0, 1e3, 1e6, 1e8]))
+        odometry = placed_on(odometry, Pose(step, 0.0, float(random.uniform(-0.5, 0.5))))
+        if random.random() < 0.1:
+            mapper.begin_at(Pose(*random.normal(0.0, 5.0, 3).tolist()))
+        place = Pose(*random.uniform((0.5, 0.5, -3.0), (9.5, 7.5, 3.0)).tolist())
+        odd = ODD[int(random.integers(len(ODD)))]
+        fit = mapper.process(odd if random.random() < 0.4 else scan_of(ROOM, place, number), odometry)
+        assert fit is None or (np.isfinite(fit.pose).all() and np.isfinite(fit.covariance).all())
+    assert mapper.keyframes
