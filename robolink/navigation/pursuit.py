@@ -24,6 +24,8 @@ _STEP = 0.05
 """Seconds between two looks for a collision ahead, at most."""
 _NEAR = 0.8
 """Share of the tolerance within which the robot stops at the goal, and turns."""
+_NEARER, _TURNED = 0.5, 0.1
+"""Share of the lookahead distance where an arc to it is obstructed, and the bearing in radians that needs no turn."""
 _FORESIGHT = np.arange(0.0, 2.6, 0.25)
 """Times in seconds for which it is predicted where moving obstacles will be."""
 _MARGIN, _SPREAD = 0.08, 0.06
@@ -100,11 +102,26 @@ class Pursuit:
             tolerance: Distance to the goal in metres from which on the robot only turns.
         """
         options = self.options
-        x, y = self._carrot(pose, speed, path)
-        distance, bearing = math.hypot(x, y), math.atan2(y, x)
         left = math.hypot(path.x[-1] - pose.x, path.y[-1] - pose.y) if path.is_whole else math.inf
         # It comes a little nearer than it must: whoever checks the goal has seen it there, though it be driven off.
         self._is_there = left < _NEAR * tolerance or (self._is_there and options.stateful and left < tolerance)
+        command = self._towards(self._carrot(pose, speed, path), pose, speed, path, around)
+        if command.is_valid or self._is_there or not options.use_rotate_to_heading:
+            return command
+        # The arc cuts a corner: nearer to the path, or turned towards it first, there may be a way.
+        near = self._carrot(pose, speed, path, _NEARER)
+        command = self._towards(near, pose, speed, path, around)
+        bearing = math.atan2(near[1], near[0])
+        if command.is_valid or abs(bearing) < _TURNED:
+            return command
+        return Command(0.0, self._turning(bearing, speed[1]), True, command.trajectory[:1])
+
+    def _towards(
+        self, carrot: tuple[float, float], pose: Pose, speed: tuple[float, float], path: LocalPath, around: Surroundings
+    ) -> Command:
+        """Return the command that leads to a point in the robot's frame, or turns it on the spot."""
+        options, (x, y) = self.options, carrot
+        distance, bearing = math.hypot(x, y), math.atan2(y, x)
         if options.use_rotate_to_heading and self._is_there:
             v, w = 0.0, self._turning(wrapped(float(path.theta[-1]) - pose.theta), speed[1])
         elif options.use_rotate_to_heading and abs(bearing) > options.rotate_to_heading_min_angle:
@@ -141,13 +158,16 @@ class Pursuit:
                 found, widest = speeds, room
         return found
 
-    def _carrot(self, pose: Pose, speed: tuple[float, float], path: LocalPath) -> tuple[float, float]:
-        """Return the point of the path at the lookahead distance, in the robot's frame."""
+    def _carrot(
+        self, pose: Pose, speed: tuple[float, float], path: LocalPath, share: float = 1.0
+    ) -> tuple[float, float]:
+        """Return the point of the path at a share of the lookahead distance, in the robot's frame."""
         options = self.options
         reach = options.lookahead_dist
         if options.use_velocity_scaled_lookahead_dist:
             scaled = abs(speed[0]) * options.lookahead_time
             reach = min(max(scaled, options.min_lookahead_dist), options.max_lookahead_dist)
+        reach *= share
         dx, dy = path.x - pose.x, path.y - pose.y
         cos, sin = math.cos(pose.theta), math.sin(pose.theta)
         x, y = cos * dx + sin * dy, cos * dy - sin * dx

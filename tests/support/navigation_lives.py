@@ -38,7 +38,7 @@ class Life(NamedTuple):
     """That time, as a multiple of the shortest way's at full speed."""
     recoveries: int
     words: str
-    """Why the goal was not reached."""
+    """Where the robot touched something, and why the goal was not reached."""
     speed: float
     """How many times as fast as life it was, on one core."""
 
@@ -115,6 +115,12 @@ class Navigation:
         return answer.status, answer.result.error_code, answer.result.error_msg
 
 
+def _why(answer: Any, is_near: bool) -> str:
+    if not answer:
+        return "no end"
+    return str(answer.result.error_msg or ("" if is_near else "far from the goal"))
+
+
 def places_on(way: Sequence[tuple[float, float]], spacing: float) -> list[Pose]:
     """Return places along a line, about `spacing` metres apart, without its ends."""
     found, left = [], spacing
@@ -151,8 +157,12 @@ def lived(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS, *
         robot = system.robot()
         before, began, cpu = robot.contacts, system.time, time.process_time()
         ended = navigation.send(world.goal).get_result_async()
+        touched: list[str] = []
         while not ended.done() and system.time - began < LONGEST * world.seconds:
+            already = robot.contacts
             system.run(0.5)
+            if robot.contacts > already:
+                touched.append(f"touched at ({robot.pose.x:.2f}, {robot.pose.y:.2f}), {system.time - began:.1f} s")
         seconds = system.time - began
         answer: Any = ended.result()
         is_near = math.dist((robot.pose.x, robot.pose.y), world.goal[:2]) < NEAR
@@ -163,6 +173,6 @@ def lived(world: NavigationWorld, folder: Path, parameters: Path = PARAMETERS, *
             seconds=seconds,
             ratio=seconds / world.seconds,
             recoveries=navigation.feedback.number_of_recoveries if navigation.feedback else 0,
-            words=(answer.result.error_msg or ("" if is_near else "far from the goal")) if answer else "no end",
+            words="; ".join(filter(None, [*touched, _why(answer, is_near)])),
             speed=seconds / max(1e-9, time.process_time() - cpu),
         )
