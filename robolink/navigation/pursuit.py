@@ -26,9 +26,9 @@ _NEAR = 0.8
 """Share of the tolerance within which the robot stops at the goal, and turns."""
 _NEARER, _TURNED = 0.5, 0.1
 """Share of the lookahead distance where an arc to it is obstructed, and the bearing in radians that needs no turn."""
-_FORESIGHT = np.arange(0.0, 2.6, 0.25)
+_FORESIGHT = np.arange(0.0, 2.1, 0.25)
 """Times in seconds for which it is predicted where moving obstacles will be."""
-_MARGIN, _SPREAD = 0.08, 0.06
+_MARGIN, _SPREAD = 0.08, 0.04
 """Distance in metres from a moving obstacle that is kept, and by how much it grows in a second of foresight."""
 _ESCAPE = 6
 """Of these times, how many must be free of other obstacles on a way out."""
