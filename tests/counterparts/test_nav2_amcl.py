@@ -66,6 +66,7 @@ def test_a_robot_that_was_carried_away_is_found_again(tmp_path: Path) -> None:
                 assert judge.rms(at + 30.0)[0] < 0.1
 
 
+@pytest.mark.slow
 def test_the_pose_is_published_with_covariance_particles_and_transform(system: System, lab: Files) -> None:
     clouds: list[ParticleCloud] = []
     system.node.create_subscription(ParticleCloud, "particle_cloud", clouds.append, qos_profile_sensor_data)
@@ -142,6 +143,7 @@ def test_a_pose_by_service_and_one_before_activation(system: System, lab: Files)
     assert pose_of(system.expect("amcl_pose").pose.pose) == pytest.approx((3, 2, 1), abs=1.0)
 
 
+@pytest.mark.slow
 def test_two_lives_are_the_same(lab: Files) -> None:
     found = []
     for _ in range(2):

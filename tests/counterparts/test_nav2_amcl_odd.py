@@ -23,6 +23,8 @@ from robolink.interfaces.std_srvs.srv import Empty, Trigger
 from robolink.testing import System
 from tests.support.localization_lives import LATCHED, Files, Judge, initial, start, written
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Files:
@@ -255,7 +257,6 @@ def test_beams_are_evenly_spaced(limits: Limits, count: int) -> None:
     assert len(beams_of(scan, TransformStamped(), limits).ahead) == count
 
 
-@pytest.mark.slow
 def test_a_map_that_is_wrong_in_places_does_not_mislead_it(tmp_path_factory: pytest.TempPathFactory) -> None:
     """A wall that is gone, and one that is not there."""
     folder = tmp_path_factory.mktemp("wrong")
@@ -275,7 +276,6 @@ def test_a_map_that_is_wrong_in_places_does_not_mislead_it(tmp_path_factory: pyt
     assert judge.held(5.0) > 0.9
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("sim_time", [False, True])
 def test_a_world_that_is_reset_is_followed(tmp_path_factory: pytest.TempPathFactory, sim_time: bool) -> None:
     """The robot is where it began, and odometry at its origin again."""
