@@ -38,6 +38,8 @@ _STRANGE = (0.55, 0.3)
 above which it does not."""
 _LOST_AFTER = 3
 """Scans in a row that do not fit, after which the robot counts as lost."""
+_JUMP = 3.0
+"""Metres between two scans that odometry only has when it jumps."""
 _GIVE_UP = 8.0
 """Metres of odometry after which a lost robot maps on from where odometry says that it is."""
 
@@ -194,15 +196,16 @@ class Mapper:
         ):
             return None
         keyframe, guess = keyframe_of(beams), self.expected(odometry)
-        spread = np.diag([0.25, 0.25, 0.1])
+        spread, way = np.diag([0.25, 0.25, 0.1]), 0.0
         if self._odometry is None:
             guess, self._begin = self._begin or guess, None
             match = self._placed_near(keyframe, guess, reach=1.0, turn=0.6) or Match(guess, 0.0, spread)
         else:
-            spread = _odometry_spread(seen_from(self._odometry, odometry), self.pose.theta)
+            moved = seen_from(self._odometry, odometry)
+            spread, way = _odometry_spread(moved, self.pose.theta), math.hypot(moved.x, moved.y)
             match = self._matched(keyframe, guess, spread, self._nearest(guess))
         self._odometry = odometry
-        if not self._is_strange(match, keyframe, 0.0):
+        if not self._is_strange(match, keyframe, way):
             self.pose = match.pose
             return Fit(match.pose, match.covariance, match.response)
         found = self._placed_anywhere(keyframe) if self._strange >= _LOST_AFTER else None
@@ -296,10 +299,16 @@ class Mapper:
 
     def _is_strange(self, match: Match, keyframe: Keyframe, way: float) -> bool:
         """Return True if a scan does not fit where the robot should be, and is not to become part of the map."""
+        # So far a robot does not drive between two scans: odometry began anew, or the world was reset.
+        jumped = way > max(_JUMP, 3.0 * self.options.minimum_travel_distance)
         matched = self.options.use_scan_matching and len(keyframe.points) >= FEWEST
-        fits = not matched or match.response >= _STRANGE[0] or self._denied(keyframe, match.pose) < _STRANGE[1]
-        self._strange, self._odd_way = (0, 0.0) if fits else (self._strange + 1, self._odd_way + way)
-        return not fits
+        fits = not matched or match.response >= _STRANGE[0]
+        if fits or (not jumped and self._denied(keyframe, match.pose) < _STRANGE[1]):
+            self._strange, self._odd_way = 0, 0.0
+            return False
+        self._strange = max(self._strange + 1, _LOST_AFTER if jumped else 0)
+        self._odd_way += 0.0 if jumped else way
+        return True
 
     def _denied(self, keyframe: Keyframe, pose: Pose) -> float:
         """Return the share of a scan's beams that the map denies: they end in free space, or go through a wall."""

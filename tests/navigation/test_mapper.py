@@ -198,6 +198,17 @@ def test_wheels_that_slip_farther_than_a_match_looks_lose_nothing() -> None:
 
 
 @pytest.mark.slow
+def test_odometry_that_jumps_does_not_lose_the_robot() -> None:
+    mapper = Mapper()
+    mapped(mapper, ROOM, way(ROUND))
+    poses = way(ROUND[:3], 0.5)
+    fits, _ = mapped(mapper, ROOM, poses, odometry=Pose(-30.0, 12.0, 2.0))  # the world was reset
+    assert not fits[0].is_lost
+    assert math.dist(fits[0].pose[:2], ROUND[0]) < 0.05
+    assert math.dist(fits[-1].pose[:2], poses[-1][:2]) < 0.05
+
+
+@pytest.mark.slow
 def test_a_lost_robot_that_finds_nothing_maps_on() -> None:
     mapper = Mapper()
     _, odometry = mapped(mapper, ROOM, way(ROUND[:4]))
@@ -236,6 +247,9 @@ def test_a_robot_localizes_itself_in_a_map_that_stays_as_it_is() -> None:
         fit = mapper.localize(scan_of(ROOM, Pose(8.0, 2.0 + 0.6 * seed, math.pi / 2), seed), odometry)
     assert fit is not None
     assert math.dist(fit.pose[:2], (8.0, 5.0)) < 0.05
+    fit = mapper.localize(scan_of(ROOM, Pose(2.0, 2.0), 9), Pose(500.0, 40.0))  # odometry began anew
+    assert fit is not None
+    assert math.dist(fit.pose[:2], (2.0, 2.0)) < 0.05
     assert len(mapper.keyframes) == before
     assert Mapper().localize(scan_of(ROOM, poses[0]), odometry) is None
 
