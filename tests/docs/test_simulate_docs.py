@@ -37,7 +37,13 @@ def test_it_has_every_key() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("faults", ["rough", "radio"])
-@pytest.mark.parametrize("system", ["follow", "wander", "lab", "goto", "square", "walker", "first_nodes", "talk"])
+@pytest.mark.parametrize(
+    "system",
+    [
+        *("follow", "wander", "lab", "goto", "square", "walker", "first_nodes", "talk"),
+        *(pytest.param(each, marks=pytest.mark.annex("nav2")) for each in ("navigate", "map_it")),
+    ],
+)
 def test_the_faults_that_come_along_fit_any_system(system: str, faults: str, tmp_path: Path) -> None:
     workspace(tmp_path)
     entries = read_launch_file(tmp_path / "configs/talk.yaml" if system == "talk" else find_launch(system))
