@@ -28,6 +28,7 @@ from robolink.interfaces.lifecycle_msgs.srv import ChangeState
 from robolink.interfaces.nav2_msgs.action import FollowPath
 from robolink.interfaces.nav2_msgs.msg import SpeedLimit
 from robolink.interfaces.nav_msgs.msg import Path
+from robolink.interfaces.sensor_msgs.msg import LaserScan
 from robolink.testing import System
 
 Result = FollowPath.Result
@@ -242,6 +243,17 @@ def test_nobody_drives_blind(system: System, tmp_path: File) -> None:
     assert status == GoalStatus.STATUS_ABORTED
     assert result.error_code in (Result.TF_ERROR, Result.CONTROLLER_TIMED_OUT)
     assert drives.commands[-1] == Twist()
+
+
+def test_scans_that_say_nothing_harm_nobody(system: System, tmp_path: File) -> None:
+    drives = Drives(system, tmp_path)
+    handle = drives.begin((1.0, 1.5), (2.5, 1.5))
+    for number, frame in enumerate(("", "odom", "base_link", "moon")):
+        scan = LaserScan(angle_min=math.nan, angle_increment=math.inf, range_min=math.nan, ranges=[math.nan] * number)
+        scan.header.frame_id, scan.header.stamp.sec = frame, (-5, 0, 2**31 - 1, 3)[number]
+        system.publish("/scan", scan)
+        system.run(0.3)
+    assert drives.end(handle)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_speed_limits_and_stamped_commands(system: System, tmp_path: File) -> None:

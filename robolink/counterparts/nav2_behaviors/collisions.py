@@ -73,13 +73,9 @@ class CollisionChecker:
         frame, base, stamp = message.header.frame_id, self._base, message.header.stamp
         polygon = np.array([(each.x, each.y) for each in message.polygon.points], np.float64)
         if frame != base:
-            try:
-                found = self._buffer.lookup_transform(frame, base, stamp)
-            except TransformException:
-                try:
-                    found = self._buffer.lookup_transform(frame, base, Time())
-                except TransformException:
-                    return
+            found = self._transform(frame, stamp)
+            if found is None:
+                return
             place = found.transform
             x, y, theta = pose_of(_Placed(place.translation, place.rotation))
             dx, dy = polygon[:, 0] - x, polygon[:, 1] - y
@@ -87,6 +83,15 @@ class CollisionChecker:
             polygon = np.stack((cos * dx + sin * dy, cos * dy - sin * dx), axis=1)
         if np.isfinite(polygon).all() and self._costmap is not None:
             self._points = cover(polygon, max(self._costmap.metadata.resolution * 2 / 3, 1e-3))
+
+    def _transform(self, frame: str, stamp: Any) -> Any:
+        """Return the robot's transform at a stamp, otherwise the latest, otherwise None."""
+        for when in (stamp, Time()):
+            try:
+                return self._buffer.lookup_transform(frame, self._base, when)
+            except (TransformException, ValueError):  # a stamp may be negative
+                continue
+        return None
 
     def free(self, poses: Floats) -> int:
         """Return how many of some poses, one after the other, are free before one that collides.

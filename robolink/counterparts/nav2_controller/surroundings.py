@@ -44,6 +44,8 @@ class MoverWatch:
     def _subscribed(self, topic: str) -> Any:
         def take(scan: LaserScan) -> None:
             waiting = self._scans.get(topic)
+            if _stamp(scan) < 0:  # no time that a transform could be of
+                return
             if waiting is None or abs(_stamp(scan) - _stamp(waiting)) > WAIT_NS:
                 self._scans[topic] = scan
 
