@@ -163,7 +163,8 @@ class ControllerServer(LifecycleNode):
 
     def destroy_node(self) -> None:
         """Destroy the costmap with the server."""
-        self.costmap.destroy_node()
+        if hasattr(self, "costmap"):  # a parameter that is refused ends the making before it
+            self.costmap.destroy_node()
         super().destroy_node()
 
     def _withdraw(self) -> None:

@@ -141,7 +141,8 @@ class PlannerServer(LifecycleNode):
 
     def destroy_node(self) -> None:
         """Destroy the costmap's node, too."""
-        self.costmap.destroy_node()
+        if hasattr(self, "costmap"):  # a parameter that is refused ends the making before it
+            self.costmap.destroy_node()
         super().destroy_node()
 
     # Actions
