@@ -51,4 +51,5 @@ def placed(pose: Pose, local: Floats) -> Floats:
     """Return points of a frame at `pose` in the frame that the pose is in."""
     cos, sin = math.cos(pose.theta), math.sin(pose.theta)
     turned = np.column_stack((cos * local[:, 0] - sin * local[:, 1], sin * local[:, 0] + cos * local[:, 1]))
-    return turned + np.array([pose.x, pose.y])
+    turned += np.array([pose.x, pose.y])
+    return turned
