@@ -83,3 +83,25 @@ def test_navigate_drives_in_processes_and_real_time() -> None:
         goal = NavigateToPose.Goal(pose=pose_message(Pose(2.0, 4.0)))
         handle = system.result(client.send_goal_async(goal), within=20.0)
         assert system.result(handle.get_result_async(), within=40.0).status == GoalStatus.STATUS_SUCCEEDED
+
+
+@pytest.mark.slow
+def test_a_simulation_drives_to_a_click_too(system: System) -> None:
+    system.launch(SHARE / "launch/tb3_simulation_launch.py")
+    system.expect_log("Managed nodes are active", within=20.0)
+    system.run(3.0)
+    system.publish("/goal_pose", pose_message(Pose(4.0, 4.2, 1.57)))
+    system.expect_log("Goal succeeded", within=30.0)
+    robot = system.robot()
+    assert math.dist((robot.pose.x, robot.pose.y), (4.0, 4.2)) < 0.35
+
+
+@pytest.mark.slow
+def test_a_simulation_with_slam_drives_on_the_map_that_it_makes(system: System) -> None:
+    system.launch(SHARE / "launch/tb3_simulation_launch.py", {"slam": "True"})
+    system.expect_log("Managed nodes are active", within=20.0)
+    system.run(6.0)
+    place = system.robot().pose
+    system.publish("/goal_pose", pose_message(Pose(place.x + 1.5, place.y, 0.0)))
+    system.expect_log("Goal succeeded", within=30.0)
+    assert math.dist((system.robot().pose.x, system.robot().pose.y), (place.x, place.y)) > 1.0
