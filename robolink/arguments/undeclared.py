@@ -104,8 +104,8 @@ class GivenParameters:
         error = sys.exc_info()[1]
         if isinstance(error, Exception) and not isinstance(error, ExternalShutdownException):
             return
-        for each, logger in self._open.values():
-            _warn(each, logger, f"no node declared it{nearest(each.name, self._declared)}")
+        for each, logger in self._open.values():  # a name may be declared by another node than the one it was given to
+            _warn(each, logger, f"no node declared it{nearest(each.name, self._declared - {each.name})}")
         self._open.clear()
 
 

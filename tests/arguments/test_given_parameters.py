@@ -110,3 +110,17 @@ def test_an_error_that_ends_the_program_says_enough(log_lines: list[Record]) -> 
     with pytest.raises(ZeroDivisionError), context:
         Robot(context).create_timer(1 / 0, print)
     assert told(log_lines) == []
+
+
+def test_a_name_that_only_another_node_declares_does_not_suggest_itself(log_lines: list[Record]) -> None:
+    context = Context(transport="memory")
+    context.init(["--ros-args", "-p", "robot:colour:=1"])
+    with context, SingleThreadedExecutor(context=context) as executor:
+        nodes = [Robot(context), Robot(context, "other")]
+        nodes[1].declare_parameter("colour", 2)
+        for node in nodes:
+            executor.add_node(node)
+        nodes[0].create_timer(0.0, context.interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            executor.spin()
+    assert told(log_lines) == [("robot", "parameter 'colour' was given, but no node declared it")]
