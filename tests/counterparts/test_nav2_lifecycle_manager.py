@@ -118,6 +118,19 @@ def test_a_node_that_is_lost_has_the_others_reset_and_started_again_with_it(syst
     assert (state(system, "two"), is_active(system)) == ("active", True)
 
 
+def test_a_node_that_is_lost_and_back_before_anybody_misses_it_is_started_as_well(system: System) -> None:
+    for name in ("one", "two"):
+        system.start(Obedient, name=name)
+    started(system, autostart=True)
+    system.expect_log("Managed nodes are active")
+    system.crash("two")
+    system.run(2.0)  # a launch file's respawn_delay, below bond_timeout
+    system.restart("two")
+    system.expect_log("CRITICAL FAILURE: SERVER two IS DOWN. Shutting down related nodes.", within=1.0)
+    system.expect_log("Managed nodes are active", within=2.0)
+    assert (state(system, "one"), state(system, "two"), is_active(system)) == ("active", "active", True)
+
+
 def test_without_bonds_nobody_is_watched(system: System) -> None:
     for name in ("one", "two"):
         system.start(Obedient, name=name)

@@ -69,6 +69,7 @@ class LifecycleManager(Node):
         self._patience = self.declare_parameter("bond_respawn_max_duration", 10.0, described(words, 0.0, 1e6)).value
         self.is_active = self._is_busy = False
         self._seen_ns: dict[str, int] = {}
+        self._gone: set[str] = set()
         self._lost_ns: int | None = None
         group = self._group = ReentrantCallbackGroup()
         self._change = {name: self._client(ChangeState, name, "change_state") for name in self.names}
@@ -120,7 +121,7 @@ class LifecycleManager(Node):
             self._is_busy = False
         self.get_logger().info(last)
         self.is_active = transitions[-1] == Transition.TRANSITION_ACTIVATE
-        self._seen_ns, self._lost_ns = dict.fromkeys(self.names, self._now()), None
+        self._seen_ns, self._lost_ns, self._gone = dict.fromkeys(self.names, self._now()), None, set()
         return True
 
     async def _all(self, transitions: Iterable[int], *, needed: bool) -> bool:
@@ -166,6 +167,11 @@ class LifecycleManager(Node):
             await pause(self, LOOK, self._group)
         return True
 
+    async def _is_active(self, name: str) -> bool:
+        """Ask a node for its state; return False too if it does not answer."""
+        answer: Any = await self._state[name].call_async(GetState.Request())
+        return answer is not None and answer.current_state.id == State.PRIMARY_STATE_ACTIVE
+
     def _now(self) -> int:
         return self.context.time.now()
 
@@ -174,9 +180,13 @@ class LifecycleManager(Node):
         if self._is_busy or not (self.is_active or self._lost_ns is not None):
             return
         now = self._now()
-        self._seen_ns.update({name: now for name in self.names if self._state[name].service_is_ready()})
+        gone = {name for name in self.names if not self._state[name].service_is_ready()}
+        back, self._gone = self._gone - gone, gone
+        self._seen_ns.update(dict.fromkeys(set(self.names) - gone, now))
         late = [name for name in self.names if now - self._seen_ns.get(name, now) > self._timeout * 1e9]
-        if self._lost_ns is None and late:
+        if self._lost_ns is None and back:  # in time; but as the same one, or as a new process that nobody has started?
+            late += [name for name in sorted(back) if not await self._is_active(name)]
+        if self._lost_ns is None and late and not self._is_busy:  # it may be by now
             lost = ", ".join(late)
             self.get_logger().error(f"CRITICAL FAILURE: SERVER {lost} IS DOWN. Shutting down related nodes.")
             await self.manage(Command.RESET)
