@@ -359,6 +359,13 @@ def test_a_newer_goal_takes_over(scene: Scene) -> None:
     assert set(planned[1:]) == {7}
 
 
+def test_a_goal_that_nobody_filled_in_moves_nothing(scene: Scene) -> None:
+    status, code, words = scene.end(scene.send(NavigateToPose.Goal()))
+    assert (status, code) == (ABORTED, 9002)
+    assert "frame_ids cannot be empty" in words
+    assert not scene.servers.goals
+
+
 def test_a_newer_goal_with_a_mistake_leaves_the_old_one(scene: Scene) -> None:
     first = scene.send()
     scene.system.run(0.5)

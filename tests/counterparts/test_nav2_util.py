@@ -178,7 +178,8 @@ def test_a_pose_in_another_frame() -> None:
     buffer = Buffer()
     buffer.set_transform(transform("map", "odom", 1.0, 8), "test")
     pose = PoseStamped()
-    assert in_frame(buffer, pose, "map") is pose
+    with pytest.raises(TransformException, match="cannot be empty"):
+        in_frame(buffer, pose, "map")
     pose.header.frame_id = "/map"
     assert in_frame(buffer, pose, "map") is pose
     pose.header.frame_id, pose.header.stamp.sec = "odom", 20  # later than any transform: the latest serves

@@ -64,13 +64,11 @@ def robot_pose(buffer: Buffer, node: Node, frame: str, base: str, tolerance: flo
 def in_frame(buffer: Buffer, pose: PoseStamped, frame: str) -> PoseStamped:
     """Return a pose in another frame, by the transform at its stamp; if that is not there, by the latest.
 
-    A pose without a frame is taken as one in `frame`.
-
     Raises:
-        TransformException: if no transform leads from its frame to the other.
+        TransformException: if no transform leads from its frame to the other, or it has none.
     """
     own: Any = pose.header.frame_id.removeprefix("/")
-    if own in ("", frame):
+    if own == frame:
         return pose
     try:
         found = buffer.lookup_transform(frame, own, pose.header.stamp)
