@@ -293,7 +293,8 @@ def fault(pose: PoseMessage) -> str:
     place, turn = pose.position, pose.orientation
     numbers = (place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w)
     if not all(abs(each) <= FARTHEST for each in numbers):
-        return f"expected finite numbers, and places within {FARTHEST:g} m, got {pose}"
+        given = ", ".join(f"{each:g}" for each in numbers)
+        return f"expected finite numbers, and places within {FARTHEST:g} m, got x, y, z and a quaternion of {given}"
     if math.hypot(*numbers[3:]) < 1e-3:
         return "its orientation is all zero, which is not a quaternion: w is 1 for no rotation"
     return ""
