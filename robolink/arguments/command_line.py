@@ -23,6 +23,11 @@ WIDE_PARAMETER = "--wide-param"
 
 A launcher gives a value of a section such as `/**` by it, since rcl's `-p` takes no patterns of names.
 """
+CHILD_PARAMETER = "--child-param"
+"""robolink's own flag for a parameter of a node that the program's node makes itself, such as a costmap of Nav2's.
+
+A launcher gives it by the full name of that node, which rcl's `-p` does not take: in ROS 2 only files can give it.
+"""
 
 
 class InvalidROSArgsError(RCLError, ValueError):
@@ -170,9 +175,16 @@ class _Parser:
         parts = _PARAMETER.fullmatch(value)
         if parts is None:
             raise ValueError("expected name:=value or node:name:=value")
-        pattern = f"/{(parts['node'] or '**').removeprefix('/')}"
+        pattern = f"/{parts['node'] or '**'}"
         typed = parse_parameter_value(parts["value"], "value")
         self.overrides.append(Override(pattern, parts["name"], typed, is_typed=True))
+
+    def child_parameter(self, value: str) -> None:
+        parts = _CHILD_PARAMETER.fullmatch(value)
+        if parts is None:
+            raise ValueError("expected /namespace/node:name:=value")
+        self.parameter(parts["parameter"])
+        self.overrides[-1] = self.overrides[-1]._replace(pattern=parts["node"])
 
     def parameter_file(self, value: str) -> None:
         from robolink.arguments.parameter_file import read_parameter_file
@@ -195,11 +207,8 @@ class _Parser:
         self.settings["log_config_file"] = value
 
 
-_PARAMETER = late(
-    r"(?:(?P<node>/?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)",
-    re.DOTALL,
-)
-"""A parameter of a node by its name or, which rcl does not know, by its full name."""
+_PARAMETER = late(r"(?:(?P<node>[A-Za-z_][A-Za-z0-9_]*):(?!=))?(?P<name>[^:*\s]+):=(?P<value>.*)", re.DOTALL)
+_CHILD_PARAMETER = late(r"(?P<node>(?:/[A-Za-z_][A-Za-z0-9_]*)+):(?P<parameter>[^:*\s]+:=.*)", re.DOTALL)
 _REMAP = (_Parser.remap, "from:=to")
 _PARAM = (_Parser.parameter, "name:=value")
 _ENCLAVE = (_Parser.enclave, "the path of an enclave")
@@ -209,6 +218,7 @@ _FLAGS = {
     "-p": _PARAM,
     "--param": _PARAM,
     WIDE_PARAMETER: (_Parser.wide_parameter, "name:=value"),
+    CHILD_PARAMETER: (_Parser.child_parameter, "/namespace/node:name:=value"),
     "--params-file": (_Parser.parameter_file, "the path of a file"),
     "--log-level": (_Parser.log_level, "LEVEL or logger:=LEVEL"),
     "-e": _ENCLAVE,
@@ -221,4 +231,4 @@ _SWITCHES = {
     for verb in ("enable", "disable")
     for sink in ("stdout", "rosout", "external-lib")
 }
-_KNOWN = [*(each for each in _FLAGS if each != WIDE_PARAMETER), *_SWITCHES]
+_KNOWN = [*(each for each in _FLAGS if each not in (WIDE_PARAMETER, CHILD_PARAMETER)), *_SWITCHES]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
-from robolink.arguments.command_line import WIDE_PARAMETER
+from robolink.arguments.command_line import CHILD_PARAMETER, WIDE_PARAMETER
 from robolink.documents.yamlfile import spell
 from robolink.exceptions import DocumentError, RobolinkError
 from robolink.launch.entry import Entry, NodeToStart, Respawn
@@ -255,8 +255,8 @@ def _for_ros(node: NodeToStart, wide: Collection[str]) -> Iterator[str]:
     if node.namespace:
         yield from ("-r", f"__ns:={node.namespace}")
     for name, value in node.parameters.items():
-        is_wide = name in wide and ":" not in name
-        yield from (WIDE_PARAMETER if is_wide else "-p", f"{name}:={spell(value)}")
+        flag = CHILD_PARAMETER if ":" in name else WIDE_PARAMETER if name in wide else "-p"
+        yield from (flag, f"{name}:={spell(value)}")
     for match, replacement in node.remappings.items():
         yield from ("-r", f"{match}:={replacement}")
     if node.log_level:

@@ -207,8 +207,11 @@ def test_any_command_line_is_read_or_refused_with_a_documented_error(args: list[
         assert isinstance(arguments.overrides_for("/a/b"), dict)
 
 
-def test_a_parameter_may_be_for_a_node_by_its_full_name() -> None:
-    given = ros("-p /r1/local_costmap/local_costmap:width:=3 -p driver:width:=4")
+def test_a_launcher_gives_a_parameter_to_a_node_by_its_full_name() -> None:
+    given = ros("--child-param /r1/local_costmap/local_costmap:width:=3 -p driver:width:=4")
     assert given.overrides_for("/r1/local_costmap/local_costmap") == {"width": 3}
     assert given.overrides_for("/driver") == {"width": 4}
     assert given.overrides_for("/r1/controller_server") == {}
+    for refused in ("-p /driver:width:=4", "--child-param driver:width:=4", "--child-param /driver:=4"):
+        with pytest.raises(InvalidROSArgsError):
+            ros(refused)

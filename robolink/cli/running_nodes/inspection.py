@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import msgspec
 
-from robolink.arguments.command_line import WIDE_PARAMETER
+from robolink.arguments.command_line import CHILD_PARAMETER, WIDE_PARAMETER
 from robolink.cli.running_nodes import runner
 from robolink.context import Context
 from robolink.exceptions import (
@@ -214,7 +214,7 @@ def _is_open(node: Node) -> bool:
 def _without(args: Sequence[str], name: str) -> list[str]:
     """Return the arguments without the parameter of that name."""
     without: list[str] = []
-    rest, flags = iter(args), ("-p", WIDE_PARAMETER)
+    rest, flags = iter(args), ("-p", WIDE_PARAMETER, CHILD_PARAMETER)
     for each in rest:
         value = next(rest, "") if each in flags else ""
         if not value.startswith(f"{name}:="):

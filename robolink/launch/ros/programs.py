@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
+from robolink.arguments.command_line import CHILD_PARAMETER
 from robolink.arguments.overrides import Override
 from robolink.arguments.parameter_file import parse_parameter_file, parse_parameter_value, read_parameter_file
 from robolink.companions.ament_index import get_search_paths, package_not_here
@@ -241,7 +242,7 @@ class _Gathered:
                     self._of_children[f"{each.pattern}:{each.name}"] = _checked(each.name, each.value)
             return [each for each in overrides if each.is_for(self._name)]
         for name, value in self.values().items():  # what was given before comes before the file
-            self.words.extend(("-p", f"{name}:={spell(value)}"))
+            self.words.extend((CHILD_PARAMETER if ":" in name else "-p", f"{name}:={spell(value)}"))
         self._by_pattern.clear()
         self.words.extend(("--params-file", os.fspath(path)))
         return []
