@@ -9,6 +9,7 @@ from typing import Any
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.counterparts.nav2_behaviors.behaviors import DEFAULTS, PLUGINS, Behavior, BehaviorError
 from robolink.counterparts.nav2_behaviors.collisions import CollisionChecker
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.options import PluginError, names_of, plugin_of
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.robot_pose import robot_pose
@@ -18,7 +19,7 @@ from robolink.counterparts.program import pause, spin_program
 from robolink.duration import Duration
 from robolink.exceptions import InvalidHandle, ParameterException
 from robolink.geometry.plane import Pose, is_finite, pose_of
-from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecycleState, TransitionCallbackReturn
 from robolink.parameters.descriptors import described
 from robolink.tf2 import Buffer, TransformException, TransformListener
 
@@ -50,7 +51,7 @@ PARAMETERS: dict[str, tuple[Any, str, float | None, float | None]] = {
 """Parameters with their defaults, descriptions and ranges."""
 
 
-class BehaviorServer(LifecycleNode):
+class BehaviorServer(ManagedServer):
     """A managed node with actions such as spin, backup and wait. `options` are those of `Node`."""
 
     collisions: CollisionChecker
@@ -65,7 +66,6 @@ class BehaviorServer(LifecycleNode):
         self._listener: TransformListener | None = None
         self._twists: TwistPublisher | None = None
         self._behaviors: list[Behavior] = []
-        self._servers: list[SimpleActionServer] = []
         self._checker: CollisionChecker | None = None
 
     # Transitions
@@ -77,7 +77,7 @@ class BehaviorServer(LifecycleNode):
             self._make_behaviors()
         except (PluginError, ParameterException) as error:
             self.get_logger().fatal(f"Failed to create behavior: {error}")
-            self._withdraw()
+            self.withdraw()
             return FAILURE
         base = self.value("robot_base_frame")
         self._listener = TransformListener(self._buffer, self)
@@ -85,8 +85,8 @@ class BehaviorServer(LifecycleNode):
         self.collisions = self._checker = CollisionChecker(self, self._buffer, base, *topics)
         self._twists = TwistPublisher(self, "cmd_vel", base)
         for behavior in self._behaviors:
-            execute = functools.partial(self._execute, behavior, len(self._servers))
-            self._servers.append(SimpleActionServer(self, behavior.action, behavior.name, execute))
+            execute = functools.partial(self._execute, behavior, len(self.actions))
+            self.actions.append(SimpleActionServer(self, behavior.action, behavior.name, execute))
         keep_unknown(self)
         return SUCCESS
 
@@ -97,40 +97,16 @@ class BehaviorServer(LifecycleNode):
             self.get_logger().info(f"Creating behavior plugin {name} of type {plugin}")
             self._behaviors.append(PLUGINS[plugin](self, name))
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take goals from now on."""
-        self.get_logger().info("Activating")
-        for each in self._servers:
-            each.activate()
-        return super().on_activate(state)
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop, and take no more goals."""
-        self.get_logger().info("Deactivating")
-        for each in self._servers:
-            each.deactivate()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw actions and topics."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
-        return SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw what is left."""
-        self.get_logger().info("Shutting down")
-        self._withdraw()
-        return SUCCESS
-
-    def _withdraw(self) -> None:
-        parts: list[Any] = [*self._servers, *self._behaviors, self._checker, self._twists]
+    def withdraw(self) -> None:
+        """Withdraw actions, behaviours and topics."""
+        super().withdraw()
+        parts: list[Any] = [*self._behaviors, self._checker, self._twists]
         for part in parts:
             if part is not None:
                 part.destroy()
         if self._listener is not None:
             self._listener.unregister()
-        self._servers, self._behaviors = [], []
+        self._behaviors = []
         self._checker = self._twists = self._listener = None
 
     # For the behaviours
@@ -163,7 +139,7 @@ class BehaviorServer(LifecycleNode):
 
     async def _execute(self, behavior: Behavior, index: int) -> None:
         """Carry out a goal of one behaviour."""
-        server, name = self._servers[index], behavior.name
+        server, name = self.actions[index], behavior.name
         self.get_logger().info(f"Running {name}")
         try:
             behavior.begin(server.goal)

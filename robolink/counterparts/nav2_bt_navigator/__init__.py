@@ -7,11 +7,12 @@ from typing import Any
 from robolink.action import ActionClient
 from robolink.counterparts.nav2_bt_navigator.navigator import Navigator
 from robolink.counterparts.nav2_bt_navigator.servers import Servers
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.program import spin_program
 from robolink.interfaces.geometry_msgs.msg import PoseStamped
 from robolink.interfaces.nav2_msgs.action import NavigateThroughPoses, NavigateToPose
-from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecycleState, TransitionCallbackReturn
 from robolink.parameters.descriptors import described
 from robolink.subscription import Subscription
 from robolink.tf2 import Buffer, TransformListener
@@ -23,7 +24,7 @@ THROUGH_POSES = ("navigate_through_poses_w_replanning_and_recovery",)
 """Names of Nav2's default trees, which are what the navigators do."""
 
 
-class BtNavigator(LifecycleNode):
+class BtNavigator(ManagedServer):
     """A managed node with the actions navigate_to_pose and navigate_through_poses. `options` are those of `Node`.
 
     It has no engine for behaviour trees: what Nav2's two default trees do is built in. A message on goal_pose makes a
@@ -42,7 +43,6 @@ class BtNavigator(LifecycleNode):
             self.declare_parameter(name, "", described(f"has no effect: what {own} does is built in"))
         words = "milliseconds to wait for a server that is not there"
         self.declare_parameter("wait_for_service_timeout", 1000, described(words, 0, 3_600_000))
-        self._navigators: list[Navigator] = []
         self._servers: Servers | None = None
         self._listener: TransformListener | None = None
         self._goals: ActionClient | None = None
@@ -63,44 +63,19 @@ class BtNavigator(LifecycleNode):
         self._listener = TransformListener(buffer, self)
         self._servers = Servers(self, self.get_parameter("wait_for_service_timeout").value / 1000)
         shared: dict[str, Any] = {"buffer": buffer, "servers": self._servers, "claim": self._claim}
-        self._navigators = [
+        navigators = (
             Navigator(self, NavigateToPose, "navigate_to_pose", period=1.0, trees=TO_POSE, **shared),
             Navigator(self, NavigateThroughPoses, "navigate_through_poses", period=3.0, trees=THROUGH_POSES, **shared),
-        ]
+        )
+        self.actions = [each.server for each in navigators]
         self._goals = ActionClient(self, NavigateToPose, "navigate_to_pose")
         self._goal_poses = self.create_subscription(PoseStamped, "goal_pose", self.on_goal_pose, 10)
         keep_unknown(self)
         return SUCCESS
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take goals from now on."""
-        self.get_logger().info("Activating")
-        for each in self._navigators:
-            each.server.activate()
-        return super().on_activate(state)
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop, and take no more goals."""
-        self.get_logger().info("Deactivating")
-        for each in self._navigators:
-            each.server.deactivate()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def withdraw(self) -> None:
         """Withdraw servers and clients."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
-        return SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw what is left."""
-        self.get_logger().info("Shutting down")
-        self._withdraw()
-        return SUCCESS
-
-    def _withdraw(self) -> None:
-        for each in self._navigators:
-            each.server.destroy()
+        super().withdraw()
         for part in (self._servers, self._goals):
             if part is not None:
                 part.destroy()
@@ -108,8 +83,7 @@ class BtNavigator(LifecycleNode):
             self.destroy_subscription(self._goal_poses)
         if self._listener is not None:
             self._listener.unregister()
-        self._navigators, self._servers, self._goals = [], None, None
-        self._goal_poses = self._listener = None
+        self._servers = self._goals = self._goal_poses = self._listener = None
 
     def _claim(self, begin: bool) -> bool:
         """Let one navigator work at a time: False if another one does."""

@@ -21,6 +21,7 @@ from robolink.counterparts.nav2_controller.following import (
 from robolink.counterparts.nav2_controller.pace import Pace
 from robolink.counterparts.nav2_controller.surroundings import MoverWatch, Outline
 from robolink.counterparts.nav2_costmap_2d.costmap_2d_ros import Costmap2DROS
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.options import PluginError, names_of
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
@@ -31,7 +32,7 @@ from robolink.geometry.plane import Pose, Speeds
 from robolink.interfaces.nav2_msgs.action import FollowPath
 from robolink.interfaces.nav2_msgs.msg import SpeedLimit
 from robolink.interfaces.nav_msgs.msg import Odometry, Path
-from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecycleState, TransitionCallbackReturn
 from robolink.navigation.local_path import LocalPath
 from robolink.navigation.rollouts import Command
 from robolink.parameters.descriptors import described
@@ -58,7 +59,7 @@ PARAMETERS: dict[str, tuple[Any, str, float | None, float | None]] = {
 """Parameters with their defaults, descriptions and ranges."""
 
 
-class ControllerServer(LifecycleNode):
+class ControllerServer(ManagedServer):
     """A managed node with the action follow_path and a local costmap. `options` are those of `Node`."""
 
     def __init__(self, **options: Any) -> None:
@@ -71,7 +72,6 @@ class ControllerServer(LifecycleNode):
         self._controllers: dict[str, Controller] = {}
         self._goal_checkers: dict[str, GoalChecker] = {}
         self._progress_checkers: dict[str, ProgressChecker] = {}
-        self._server: SimpleActionServer | None = None
         self._twists: TwistPublisher | None = None
         self._watch: MoverWatch | None = None
         self._subscriptions_made: list[Any] = []
@@ -93,12 +93,12 @@ class ControllerServer(LifecycleNode):
             self._make_plugins()
         except (PluginError, ParameterException) as error:
             self.get_logger().fatal(f"Failed to create controller. Exception: {error}")
-            self._withdraw()
+            self.withdraw()
             return FAILURE
         self._twists = TwistPublisher(self, "cmd_vel", self.costmap.base_frame)
         self._plans = self.create_lifecycle_publisher(Path, "local_plan", 1)
         self._parts = self.create_lifecycle_publisher(Path, "transformed_global_plan", 1)
-        self._server = SimpleActionServer(self, FollowPath, "follow_path", self._execute)
+        self.actions.append(SimpleActionServer(self, FollowPath, "follow_path", self._execute))
         topics = (self.get_parameter(each).value for each in ("speed_limit_topic", "odom_topic"))
         self._subscriptions_made = [
             self.create_subscription(SpeedLimit, next(topics), self.on_speed_limit, 10),
@@ -128,38 +128,28 @@ class ControllerServer(LifecycleNode):
         self.get_logger().info(f"Controller Server has {' '.join(self._controllers)} controllers available.")
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take goals from now on."""
-        self.get_logger().info("Activating")
-        if self.costmap.trigger_activate() is not SUCCESS:
-            return FAILURE
-        result = super().on_activate(state)
-        if self._server is not None:
-            self._server.activate()
-        return result
+        """Take goals from now on, once the costmap is active."""
+        return super().on_activate(state) if self.costmap.trigger_activate() is SUCCESS else FAILURE
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop the robot, and take no more goals."""
-        self.get_logger().info("Deactivating")
-        if self._server is not None:
-            self._server.deactivate()
-        self._stop()
+        self._stop()  # before its publisher is deactivated; a goal that runs stops it once more when it is closed
+        result = super().on_deactivate(state)
         self.costmap.trigger_deactivate()
-        return super().on_deactivate(state)
+        return result
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Withdraw the action, the topics and the costmap."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
+        result = super().on_cleanup(state)
         self.costmap.trigger_cleanup()
-        return SUCCESS
+        return result
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop, and withdraw what is left."""
-        self.get_logger().info("Shutting down")
         self._stop()
-        self._withdraw()
+        result = super().on_shutdown(state)
         self.costmap.trigger_shutdown()
-        return SUCCESS
+        return result
 
     def destroy_node(self) -> None:
         """Destroy the costmap with the server."""
@@ -167,8 +157,10 @@ class ControllerServer(LifecycleNode):
             self.costmap.destroy_node()
         super().destroy_node()
 
-    def _withdraw(self) -> None:
-        for part in (self._server, self._twists, self._watch):
+    def withdraw(self) -> None:
+        """Withdraw the action and the topics."""
+        super().withdraw()
+        for part in (self._twists, self._watch):
             if part is not None:
                 part.destroy()
         for each in self._subscriptions_made:
@@ -176,7 +168,7 @@ class ControllerServer(LifecycleNode):
         for each in (self._plans, self._parts):
             if each is not None:
                 self.destroy_lifecycle_publisher(each)
-        self._server = self._twists = self._watch = self._plans = self._parts = None
+        self._twists = self._watch = self._plans = self._parts = None
         self._subscriptions_made = []
         self._controllers, self._goal_checkers, self._progress_checkers = {}, {}, {}
 
@@ -214,21 +206,21 @@ class ControllerServer(LifecycleNode):
 
     async def _execute(self) -> None:
         """Carry out a goal, and those that take over from it."""
-        assert self._server is not None
+        (server,) = self.actions
         self.get_logger().info("Received a goal, begin computing control effort.")
         is_reached = False
         try:
-            is_reached = await self._follow(self._server)
+            is_reached = await self._follow(server)
         except DriveError as error:
             self.get_logger().error(str(error))
-            self._server.terminate_current(Result(error_code=error.code, error_msg=str(error)))
+            server.terminate_current(Result(error_code=error.code, error_msg=str(error)))
         finally:  # the coroutine may be closed where it awaits
             if not is_reached or self.get_parameter("publish_zero_velocity").value:
                 self._stop()
             for each in self._controllers.values():
                 each.reset()
         if is_reached:
-            self._server.succeeded_current()
+            server.succeeded_current()
 
     async def _follow(self, server: SimpleActionServer) -> bool:
         """Drive along the path of the goal; True at its end, False if it was cancelled. Raises DriveError."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.counterparts.nav2_costmap_2d.costmap_2d_ros import Costmap2DROS
 from robolink.counterparts.nav2_planner.paths import joined, path_message
 from robolink.counterparts.nav2_planner.planners import DEFAULTS, Planner, PlannerError
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.robot_pose import fault
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
@@ -22,7 +22,7 @@ from robolink.interfaces.nav2_msgs.action import ComputePathThroughPoses, Comput
 from robolink.interfaces.nav2_msgs.srv import IsPathValid
 from robolink.interfaces.nav_msgs.msg import Path
 from robolink.interfaces.std_msgs.msg import Header
-from robolink.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecyclePublisher, LifecycleState, TransitionCallbackReturn
 from robolink.navigation.footprint import FREE, INSCRIBED, LETHAL, UNKNOWN, cover, highest_costs
 from robolink.navigation.grid import Floats
 from robolink.navigation.planning import PlanError, plan
@@ -51,7 +51,7 @@ class _Trip(NamedTuple):
     planner_id: str
 
 
-class PlannerServer(LifecycleNode):
+class PlannerServer(ManagedServer):
     """A managed node that plans paths through its costmap. `options` are those of `Node`."""
 
     def __init__(self, **options: Any) -> None:
@@ -66,8 +66,6 @@ class PlannerServer(LifecycleNode):
         self._planners: dict[str, Planner] = {}
         self._group = ReentrantCallbackGroup()
         self._paths: LifecyclePublisher[Path] | None = None
-        self._to_pose: SimpleActionServer | None = None
-        self._through: SimpleActionServer | None = None
         self._served: Any = None
 
     # Transitions
@@ -84,60 +82,38 @@ class PlannerServer(LifecycleNode):
                 self.get_logger().info(f"Created global planner plugin {name} of type {self._planners[name].plugin}")
         except (PlannerError, ParameterException) as error:
             self.get_logger().fatal(f"Failed to create global planner. Exception: {error}")
-            self._withdraw()
+            self.withdraw()
             return FAILURE
         self.get_logger().info(f"Planner Server has {' '.join(self._planners)} planners available.")
         self._paths = self.create_lifecycle_publisher(Path, "plan", 1)
-        self._to_pose = SimpleActionServer(self, ComputePathToPose, "compute_path_to_pose", self.compute_to_pose)
-        self._through = SimpleActionServer(
-            self, ComputePathThroughPoses, "compute_path_through_poses", self.compute_through_poses
-        )
+        self.actions = [
+            SimpleActionServer(self, ComputePathToPose, "compute_path_to_pose", self.compute_to_pose),
+            SimpleActionServer(self, ComputePathThroughPoses, "compute_path_through_poses", self.compute_through_poses),
+        ]
         self._served = self.create_service(IsPathValid, "is_path_valid", self.on_is_path_valid)
         keep_unknown(self)
         return SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Accept goals."""
-        self.get_logger().info("Activating")
-        if self.costmap.trigger_activate() is not SUCCESS:
-            return FAILURE
-        for each in self._actions():
-            each.activate()
-        return super().on_activate(state)
+        """Accept goals, once the costmap is active."""
+        return super().on_activate(state) if self.costmap.trigger_activate() is SUCCESS else FAILURE
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Accept no goals."""
-        self.get_logger().info("Deactivating")
-        for each in self._actions():
-            each.deactivate()
+        result = super().on_deactivate(state)
         self.costmap.trigger_deactivate()
-        return super().on_deactivate(state)
+        return result
 
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def withdraw(self) -> None:
         """Withdraw the actions and what else is offered."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
-        return SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw what is left."""
-        self.get_logger().info("Shutting down")
-        self._withdraw()
-        return SUCCESS
-
-    def _withdraw(self) -> None:
-        for each in self._actions():
-            each.destroy()
+        super().withdraw()
         if self._paths is not None:
             self.destroy_lifecycle_publisher(self._paths)
         if self._served is not None:
             self.destroy_service(self._served)
-        self._to_pose = self._through = self._paths = self._served = None
+        self._paths = self._served = None
         self._planners = {}
         self.costmap.end()
-
-    def _actions(self) -> Iterable[SimpleActionServer]:
-        return [each for each in (self._to_pose, self._through) if each is not None]
 
     def destroy_node(self) -> None:
         """Destroy the costmap's node, too."""
@@ -150,14 +126,12 @@ class PlannerServer(LifecycleNode):
     async def compute_to_pose(self) -> None:
         """Plan a path to a pose."""
         self.get_logger().info("Computing path to goal.")
-        assert self._to_pose is not None
-        await self._compute(self._to_pose)
+        await self._compute(self.actions[0])
 
     async def compute_through_poses(self) -> None:
         """Plan a path through poses."""
         self.get_logger().info("Computing path through poses to goal.")
-        assert self._through is not None
-        await self._compute(self._through)
+        await self._compute(self.actions[1])
 
     async def _compute(self, server: SimpleActionServer) -> None:
         """Carry out the goal of a server, and end it with the path or with an error code."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.robot_pose import fault
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
@@ -17,7 +18,7 @@ from robolink.interfaces.geometry_msgs.msg import Quaternion
 from robolink.interfaces.nav2_msgs.action import SmoothPath
 from robolink.interfaces.nav2_msgs.msg import Costmap
 from robolink.interfaces.nav_msgs.msg import Path
-from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecycleState, TransitionCallbackReturn
 from robolink.navigation.grid import Floats, Grid
 from robolink.navigation.planning import weights_of
 from robolink.navigation.search import BLOCKED
@@ -45,7 +46,7 @@ class SmoothingError(RobolinkError, ValueError):
         self.code = code
 
 
-class SmootherServer(LifecycleNode):
+class SmootherServer(ManagedServer):
     """A managed node with the action smooth_path. `options` are those of `Node`."""
 
     def __init__(self, **options: Any) -> None:
@@ -55,7 +56,6 @@ class SmootherServer(LifecycleNode):
         words = "topic of the costmap that says where a path may lead"
         self.declare_parameter("costmap_topic", "global_costmap/costmap_raw", described(words))
         self._names: list[str] = []
-        self._server: SimpleActionServer | None = None
         self._subscription: Subscription[Any] | None = None
         self._costmap: Costmap | None = None
 
@@ -72,42 +72,16 @@ class SmootherServer(LifecycleNode):
                 return FAILURE
         topic = self.get_parameter("costmap_topic").value
         self._subscription = self.create_subscription(Costmap, topic, self.on_costmap, LATCHED)
-        self._server = SimpleActionServer(self, SmoothPath, "smooth_path", self._execute)
+        self.actions.append(SimpleActionServer(self, SmoothPath, "smooth_path", self._execute))
         keep_unknown(self)
         return SUCCESS
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take goals from now on."""
-        self.get_logger().info("Activating")
-        if self._server is not None:
-            self._server.activate()
-        return super().on_activate(state)
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take no more goals."""
-        self.get_logger().info("Deactivating")
-        if self._server is not None:
-            self._server.deactivate()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def withdraw(self) -> None:
         """Withdraw the server."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
-        return SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw what is left."""
-        self.get_logger().info("Shutting down")
-        self._withdraw()
-        return SUCCESS
-
-    def _withdraw(self) -> None:
-        if self._server is not None:
-            self._server.destroy()
+        super().withdraw()
         if self._subscription is not None:
             self.destroy_subscription(self._subscription)
-        self._server = self._subscription = self._costmap = None
+        self._subscription = self._costmap = None
 
     def on_costmap(self, costmap: Costmap) -> None:
         """Take the newest costmap."""
@@ -115,16 +89,16 @@ class SmootherServer(LifecycleNode):
 
     async def _execute(self) -> None:
         """Smooth the path of the current goal."""
-        assert self._server is not None
         self.get_logger().info("Received a path to smooth.")
-        goal, began = self._server.goal, self.get_clock().now()
+        (server,) = self.actions
+        goal, began = server.goal, self.get_clock().now()
         try:
             path = self._smoothed(goal)
         except SmoothingError as error:
             self.get_logger().error(str(error))
-            return self._server.terminate_current(Result(error_code=error.code, error_msg=str(error)))
+            return server.terminate_current(Result(error_code=error.code, error_msg=str(error)))
         took = (self.get_clock().now() - began).to_msg()
-        return self._server.succeeded_current(Result(path=path, smoothing_duration=took, was_completed=True))
+        return server.succeeded_current(Result(path=path, smoothing_duration=took, was_completed=True))
 
     def _smoothed(self, goal: Any) -> Path:
         """Return the smooth path of a goal. Raises SmoothingError."""

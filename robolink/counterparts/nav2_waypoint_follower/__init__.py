@@ -6,12 +6,13 @@ from typing import Any, cast
 
 from robolink.callback_groups import ReentrantCallbackGroup
 from robolink.counterparts.nav2_util.calls import ActionCall, Outcome
+from robolink.counterparts.nav2_util.managed_server import ManagedServer
 from robolink.counterparts.nav2_util.parameters import keep_unknown
 from robolink.counterparts.nav2_util.simple_action_server import SimpleActionServer
 from robolink.counterparts.program import pause, spin_program
 from robolink.interfaces.nav2_msgs.action import FollowWaypoints, NavigateToPose
 from robolink.interfaces.nav2_msgs.msg import MissedWaypoint
-from robolink.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from robolink.lifecycle import LifecycleState, TransitionCallbackReturn
 from robolink.parameters.descriptors import described
 from robolink.task import Future
 
@@ -25,7 +26,7 @@ PATIENCE = 1.0
 PLUGIN = "nav2_waypoint_follower::WaitAtWaypoint"
 
 
-class WaypointFollower(LifecycleNode):
+class WaypointFollower(ManagedServer):
     """A managed node with the action follow_waypoints. `options` are those of `Node`.
 
     It has no GPS waypoints, and one task to do at a waypoint: to wait.
@@ -39,7 +40,6 @@ class WaypointFollower(LifecycleNode):
         words = "name of the task at each waypoint, whose parameters begin with it"
         self.declare_parameter("waypoint_task_executor_plugin", "wait_at_waypoint", described(words))
         self._group = ReentrantCallbackGroup()
-        self._server: SimpleActionServer | None = None
         self._drive: ActionCall | None = None
         self._pause = 0.0
 
@@ -52,7 +52,7 @@ class WaypointFollower(LifecycleNode):
         if not self._configure_task(task):
             return FAILURE
         self._drive = ActionCall(self, NavigateToPose, "navigate_to_pose", self._group)
-        self._server = SimpleActionServer(self, FollowWaypoints, "follow_waypoints", self._execute)
+        self.actions.append(SimpleActionServer(self, FollowWaypoints, "follow_waypoints", self._execute))
         keep_unknown(self)
         return SUCCESS
 
@@ -76,45 +76,19 @@ class WaypointFollower(LifecycleNode):
         self._pause = max(0, milliseconds) / 1000 if is_enabled else 0.0
         return True
 
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Take goals from now on."""
-        self.get_logger().info("Activating")
-        if self._server is not None:
-            self._server.activate()
-        return super().on_activate(state)
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop, and take no more goals."""
-        self.get_logger().info("Deactivating")
-        if self._server is not None:
-            self._server.deactivate()
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def withdraw(self) -> None:
         """Withdraw server and client."""
-        self.get_logger().info("Cleaning up")
-        self._withdraw()
-        return SUCCESS
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Withdraw what is left."""
-        self.get_logger().info("Shutting down")
-        self._withdraw()
-        return SUCCESS
-
-    def _withdraw(self) -> None:
-        for part in (self._server, self._drive):
-            if part is not None:
-                part.destroy()
-        self._server = self._drive = None
+        super().withdraw()
+        if self._drive is not None:
+            self._drive.destroy()
+        self._drive = None
 
     # Goals
 
     async def _execute(self) -> None:
-        assert self._server is not None
         assert self._drive is not None
         try:
-            await self._follow(self._server, self._drive)
+            await self._follow(self.actions[0], self._drive)
         finally:
             self._drive.cancel()
 
