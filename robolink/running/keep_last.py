@@ -238,7 +238,7 @@ class KeepLast(Mailbox):
         return stored.content
 
     take_arrived = take_next
-    """Return what a notice stands for."""
+    """Return the message that a notice stands for."""
 
     def _note_gap(self, number: int, receiver: Receiver) -> None:
         last, dropped = self._taken

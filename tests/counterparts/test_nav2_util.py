@@ -1,4 +1,4 @@
-"""What Nav2's counterparts share: action servers with preemption, the robot's pose, parameters of a file."""
+"""Helps that Nav2's counterparts share: action servers with preemption, the robot's pose, parameters of a file."""
 
 from __future__ import annotations
 

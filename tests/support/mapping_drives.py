@@ -32,7 +32,7 @@ ERRORS = {"scale": {"v": 1.03, "w": 0.97}, "drift": 0.01, "noise": {"v": 0.05, "
 
 
 class Drive(NamedTuple):
-    """What was measured on a drive, a row for each scan.
+    """Measurements of a drive, a row for each scan.
 
     `segments` and `circles` are the walls and fixed obstacles of the world, `moved` where things were that move or can
     be pushed: rows of x, y and a radius around all of it, in metres.

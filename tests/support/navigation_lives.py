@@ -28,7 +28,7 @@ LONGEST = 3.0
 
 
 class Life(NamedTuple):
-    """What became of a robot's way to its goal."""
+    """Outcome of a robot's way to its goal."""
 
     has_reached: bool
     contacts: int

@@ -69,7 +69,7 @@ class Walk(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """What stands in a world: lines of walls from point to point, things, and people."""
+    """Contents of a world: lines of walls from point to point, things, and people."""
 
     walls: list[list[Point]]
     things: list[Box | Circle]

@@ -94,7 +94,7 @@ class Costmap2DROS(LifecycleNode):
         if parent is not None:
             _spin_with(parent, self)
 
-    # What the owner reads
+    # State, for the owner
 
     @property
     def grid(self) -> Grid:
@@ -148,7 +148,7 @@ class Costmap2DROS(LifecycleNode):
         last = (each.last_ns for layer, each in self._sensors if layer.enabled)
         return max((now - each for each in last), default=0) / 1e9
 
-    # What the owner, or a service, does
+    # Requests of the owner, or of a service
 
     def clear(self) -> None:
         """Forget what sensors saw, and write the costs anew."""

@@ -291,7 +291,7 @@ class SlamToolbox(LifecycleNode):
             self.mapper.begin_at(self.mapper.pose)
             self.get_logger().warning(f"{reason}: odometry begins anew, and the robot is looked for where it was last")
 
-    # What goes out
+    # Publishing
 
     def on_transform_due(self) -> None:
         """Publish the transform from the map to odometry, if a scan came since the last time."""
